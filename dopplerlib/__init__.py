@@ -1,0 +1,40 @@
+"""Doppler-only radar tracking: models, filters and their evaluation.
+
+Names are loaded when they are first used (PEP 562), so that importing the library costs nothing
+and asks for numba only where a filter runs.
+"""
+
+from importlib import import_module
+
+_HOME = {
+    "RadarArray": "model.radar_array",
+    "doppler_shift": "model.doppler",
+    "doppler_jacobian": "model.doppler",
+    "constant_velocity": "model.motion",
+    "Scenario": "model.scenario",
+    "simulate": "model.simulation",
+    "Track": "estimation.track",
+    "ekf": "estimation.extended_kalman",
+    "gate_bounds": "estimation.extended_kalman",
+    "kf": "estimation.linear_kalman",
+    "kf_predict": "estimation.linear_kalman",
+    "kf_update": "estimation.linear_kalman",
+    "nees": "evaluation.consistency",
+    "nis": "evaluation.consistency",
+    "chi2_interval": "evaluation.consistency",
+    "innovation_mean": "evaluation.whiteness",
+    "innovation_whiteness": "evaluation.whiteness",
+}
+
+__all__ = sorted(_HOME)  # noqa: PLE0605
+__version__ = "0.1.0"
+
+
+def __getattr__(name):
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_HOME[name]}", __name__), name)
+
+
+def __dir__():
+    return __all__

@@ -1,0 +1,14 @@
+"""Write `dopplerlib.kernels`: ``python -m dopplerlib.derive``."""
+
+import os
+from pathlib import Path
+
+from .sources import kernel_sources
+
+KERNELS = Path(__file__).parents[1] / "kernels"
+
+for name, text in kernel_sources().items():
+    unfinished = KERNELS / f"{name}.tmp"
+    unfinished.write_text(text, encoding="utf-8", newline="\n")
+    os.replace(unfinished, KERNELS / name)
+    print(f"dopplerlib/kernels/{name}")

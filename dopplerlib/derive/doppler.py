@@ -1,0 +1,94 @@
+"""The Doppler shift of a moving point seen by a fixed sensor, and its gradient.
+
+Equation numbers are those of Mittermaier et al. (2016), doi:10.5194/ars-14-39-2016.
+"""
+
+import sympy as sp
+
+from .block import Block, Stage
+
+STATE = sp.symbols("x y z v_x v_y v_z", real=True)
+SENSOR = sp.symbols("s_x s_y s_z", real=True)
+WAVELENGTH = sp.Symbol("lambda", positive=True)
+
+# In code the factor 2 / lambda is one number: the Doppler shift of 1 m/s straight ahead.
+DOPPLER_PER_SPEED = sp.Symbol("doppler_per_speed", positive=True)
+
+LINE_OF_SIGHT = sp.symbols("d_x d_y d_z", real=True)
+INVERSE_RANGE = sp.Symbol("inverse_range", positive=True)
+
+SHIFT = sp.Symbol("shift", real=True)
+GRADIENT = sp.symbols("h_x h_y h_z h_vx h_vy h_vz", real=True)
+
+
+def doppler_shift():
+    """Return Eq 6, positive when target and sensor approach each other."""
+    p, v = sp.Matrix(STATE[:3]), sp.Matrix(STATE[3:])
+    to_sensor = sp.Matrix(SENSOR) - p
+    return 2 * to_sensor.dot(v) / (WAVELENGTH * sp.sqrt(to_sensor.dot(to_sensor)))
+
+
+def doppler_gradient():
+    """Return the six partial derivatives of Eq 6, in the order of `STATE`."""
+    return [sp.diff(doppler_shift(), component) for component in STATE]
+
+
+def in_line_of_sight(expression):
+    """Rewrite `expression` with d = s - p, the inverse range 1/|d|, and 2/lambda as one symbol.
+
+    The three are what a person would compute first. Naming them leaves only sums and products,
+    so that every processor which follows IEEE 754 computes the same bits.
+    """
+    d = LINE_OF_SIGHT
+    to_line_of_sight = {p: s - d_i for p, s, d_i in zip(STATE[:3], SENSOR, d, strict=True)}
+    return sp.factor_terms(
+        expression.subs(to_line_of_sight, simultaneous=True)
+        .subs(sum(d_i**2 for d_i in d), INVERSE_RANGE**-2)
+        .subs(WAVELENGTH, 2 / DOPPLER_PER_SPEED)
+    )
+
+
+def line_of_sight_stage():
+    """Return the assignments that define what `in_line_of_sight` names."""
+    d = LINE_OF_SIGHT
+    return Stage(
+        "line of sight and inverse range",
+        [(d_i, s - p) for d_i, s, p in zip(d, SENSOR, STATE[:3], strict=True)]
+        + [(INVERSE_RANGE, 1 / sp.sqrt(sum(d_i**2 for d_i in d)))],
+    )
+
+
+def shift_stage():
+    """Return the assignment of the Doppler shift."""
+    return Stage("Doppler shift, Eq 6", [(SHIFT, in_line_of_sight(doppler_shift()))])
+
+
+def gradient_stage():
+    """Return the assignments of the Doppler shift and its gradient, which share most terms."""
+    gradient = [in_line_of_sight(g) for g in doppler_gradient()]
+    return Stage(
+        "Doppler shift, Eq 6, and its gradient, Eq 7",
+        [(SHIFT, in_line_of_sight(doppler_shift())), *zip(GRADIENT, gradient, strict=True)],
+    )
+
+
+def shift_block():
+    """Return the program of the Doppler shift alone."""
+    return Block(
+        name="doppler_shift",
+        summary="Doppler shift in Hz, positive when approaching (Eq 6).",
+        inputs=(*STATE, *SENSOR, DOPPLER_PER_SPEED),
+        stages=(line_of_sight_stage(), shift_stage()),
+        outputs=(SHIFT,),
+    )
+
+
+def gradient_block():
+    """Return the program of the Doppler shift and its six partial derivatives."""
+    return Block(
+        name="doppler_shift_and_gradient",
+        summary="Doppler shift in Hz and its derivatives by x, y, z, v_x, v_y, v_z (Eqs 6, 7).",
+        inputs=(*STATE, *SENSOR, DOPPLER_PER_SPEED),
+        stages=(line_of_sight_stage(), gradient_stage()),
+        outputs=(SHIFT, *GRADIENT),
+    )

@@ -1,0 +1,111 @@
+"""One cycle of the extended Kalman filter for constant velocity and Doppler measurements.
+
+The covariance is kept as its 21 distinct entries, so it is symmetric by construction. R is
+diagonal, so the update of all N sensors is done one sensor at a time: for the *linearised* model
+this is the same estimate as the update with the N x N innovation covariance (Bierman 1977), for
+any number of sensors and without a matrix inverse. All Jacobians belong to the predicted state.
+"""
+
+import sympy as sp
+
+from .block import Block, Stage
+from .doppler import (
+    DOPPLER_PER_SPEED,
+    GRADIENT,
+    SENSOR,
+    SHIFT,
+    STATE,
+    gradient_stage,
+    line_of_sight_stage,
+)
+
+_AXES = ("x", "y", "z", "vx", "vy", "vz")
+UPPER = [(i, j) for i in range(6) for j in range(i, 6)]
+
+T = sp.Symbol("T", positive=True)
+COVARIANCE = [sp.Symbol(f"p_{_AXES[i]}_{_AXES[j]}", real=True) for i, j in UPPER]
+PROCESS_NOISE = [sp.Symbol(f"q_{_AXES[i]}_{_AXES[j]}", real=True) for i, j in UPPER]
+CORRECTION = sp.symbols("c_x c_y c_z c_vx c_vy c_vz", real=True)
+NIS = sp.Symbol("nis", real=True)
+MEASUREMENT, SEEN, VARIANCE = sp.symbols("measurement seen variance", real=True)
+INNOVATION = sp.Symbol("innovation", real=True)
+
+
+def transition():
+    """Return F of the constant-velocity model (Eq 4)."""
+    eye, zero = sp.eye(3), sp.zeros(3)
+    return sp.Matrix(sp.BlockMatrix([[eye, T * eye], [zero, eye]]))
+
+
+def symmetric(entries):
+    """Return the 6 x 6 symmetric matrix whose upper triangle, row by row, is `entries`."""
+    matrix = sp.zeros(6)
+    for (i, j), entry in zip(UPPER, entries, strict=True):
+        matrix[i, j] = matrix[j, i] = entry
+    return matrix
+
+
+def _new(symbols):
+    return [sp.Symbol(f"{symbol.name}_new", real=True) for symbol in symbols]
+
+
+def predict_block():
+    """Return the time update of Table 1: x = F x, P = F P F' + Q."""
+    f = transition()
+    state = list(f @ sp.Matrix(STATE))
+    covariance = f @ symmetric(COVARIANCE) @ f.T + symmetric(PROCESS_NOISE)
+    # Nested in T (Horner's rule) both off-diagonal entries of a pair share their inner sum.
+    covariance = [sp.horner(sp.expand(covariance[i, j]), T) for i, j in UPPER]
+    return Block(
+        name="predict",
+        summary="Time update: x = F x, P = F P F' + Q (Table 1).",
+        inputs=(*STATE, *COVARIANCE, *PROCESS_NOISE),
+        stages=(
+            Stage("state", list(zip(_new(STATE), state, strict=True))),
+            Stage("covariance", list(zip(_new(COVARIANCE), covariance, strict=True))),
+        ),
+        outputs=(*_new(STATE), *_new(COVARIANCE)),
+    )
+
+
+def update_block():
+    """Return the measurement update of Table 1 by one sensor.
+
+    The state stays the predicted one, at which Eq 6 is linearised for every sensor; what the
+    sensors so far have corrected is kept apart, in `CORRECTION`. ``seen`` is 1, or 0 for a sensor
+    whose measurement is missing: it multiplies the gain.
+    """
+    p, h, c = symmetric(COVARIANCE), sp.Matrix(GRADIENT), sp.Matrix(CORRECTION)
+    u = sp.Matrix(sp.symbols("u_x u_y u_z u_vx u_vy u_vz", real=True))
+    s, e, weight = sp.symbols("s e weight", real=True)
+    conditional = Stage(
+        "u = P h, the variance s = h' P h + r, the innovation e left by the sensors before",
+        [
+            *zip(u, p @ h, strict=True),
+            (s, h.dot(u) + VARIANCE),
+            (INNOVATION, MEASUREMENT - SHIFT),
+            (e, INNOVATION - h.dot(c)),
+            (weight, SEEN / s),
+        ],
+    )
+    k = u * weight
+    gain = sp.symbols("k_x k_y k_z k_vx k_vy k_vz", real=True)
+    covariance = p - sp.Matrix(gain) @ u.T
+    correct = Stage(
+        "gain k, correction, covariance P - k u', NIS",
+        [
+            *zip(gain, k, strict=True),
+            *zip(_new(CORRECTION), [c_i + k_i * e for c_i, k_i in zip(c, gain, strict=True)],
+                 strict=True),
+            *zip(_new(COVARIANCE), [covariance[i, j] for i, j in UPPER], strict=True),
+            (*_new([NIS]), NIS + e * e * weight),
+        ],
+    )
+    return Block(
+        name="update",
+        summary="Measurement update by one sensor (Table 1, Eqs 6, 7, 14).",
+        inputs=(*STATE, *COVARIANCE, *CORRECTION, NIS, MEASUREMENT, SEEN, VARIANCE, *SENSOR,
+                DOPPLER_PER_SPEED),
+        stages=(line_of_sight_stage(), gradient_stage(), conditional, correct),
+        outputs=(*_new(COVARIANCE), *_new(CORRECTION), *_new([NIS]), INNOVATION, *GRADIENT),
+    )

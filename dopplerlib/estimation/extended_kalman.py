@@ -1,0 +1,213 @@
+"""The extended Kalman filter for Doppler measurements of a target at constant velocity."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from .. import _checks
+from ..model.doppler import check_clear_of_sensors
+from ..model.motion import constant_velocity
+from .track import Track
+
+_OPTIONAL = ("P", "innovation", "S")
+
+
+def ekf(
+    z,
+    array,
+    x0,
+    P0,
+    T,
+    sigma_p,
+    sigma_f,
+    noise="common",
+    gate=None,
+    *,
+    confidence=0.95,
+    keep=_OPTIONAL,
+    workers=None,
+):
+    """Track a target from its Doppler shifts, over a whole record and for many runs at once.
+
+    Every cycle predicts, then updates. The Jacobian is that of the predicted state.
+
+    Parameters
+    ----------
+    z : array_like, shape (..., K, N)
+        Doppler measurements in Hz; NaN says that this sensor is missing at this sample.
+    array : RadarArray
+        The N sensors.
+    x0 : array_like, shape (..., 6)
+        State [x, y, z, v_x, v_y, v_z] in m and m/s one interval *before* the first sample.
+    P0 : array_like, shape (..., 6, 6)
+        Covariance of `x0`. Leading axes of `x0` and `P0` broadcast against those of `z`.
+    T : float
+        Sampling interval in s.
+    sigma_p : float
+        Standard deviation of the acceleration in m/s^2, see `constant_velocity`.
+    sigma_f : array_like, broadcast to (K, N)
+        Standard deviation of the measurements in Hz: one number, one for each sensor, or one for
+        each sample and sensor.
+    noise : {"common", "independent"}
+        Process noise, see `constant_velocity`.
+    gate : {None, "upper", "two-sided"}
+        Which measurements are used. None: all. "upper": those whose NIS is below the chi-square
+        quantile `confidence`. "two-sided": those whose NIS is inside the central interval of
+        that probability, which also refuses measurements that fit too well; Fig 6 of the paper
+        shows this one. The degrees of freedom are the number of sensors that are there. A
+        refused measurement leaves the state predicted.
+    confidence : float
+        Probability of the gate.
+    keep : sequence of {"P", "innovation", "S"}
+        Fields of the result that are wanted; the others are None. Ten thousand runs of a
+        thousand samples need 2.9 GB for P alone.
+    workers : int, optional
+        Threads among which the runs are shared; one for each processor if None. The result does
+        not depend on it.
+
+    Returns
+    -------
+    Track
+        Leading axes are those of `z`; n = 6, m = N.
+
+    Raises
+    ------
+    ValueError
+        If an argument has the wrong shape, a setting is not finite and positive, a covariance is
+        not positive definite, a measurement is infinite, or the target starts on a sensor.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Table 1 and Eqs 4 to 9, 14, 16, 17. R is diagonal, so the sensors
+    are processed one after the other on the 21 distinct entries of P, which keeps P symmetric by
+    construction and needs no inverse (Bierman 1977).
+    """
+    z = _measurements(z, array)
+    T = _checks.positive_number("T", T)
+    F, Q = constant_velocity(T, sigma_p, noise)
+    variance = _variance(sigma_f, z.shape[-2:])
+    lower, upper = gate_bounds(gate, len(array), confidence)
+    x0 = _checks.finite("x0", x0, (6,))
+    check_clear_of_sensors("F x0", x0 @ F.T, array)
+    P0 = _checks.covariance("P0", P0, 6)
+    for name in keep:
+        _checks.one_of("keep", name, _OPTIONAL)
+
+    batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
+    runs = int(np.prod(batch))
+    z = np.ascontiguousarray(z).reshape(runs, samples, sensors)
+    x0 = _each_run("x0", x0, batch, (6,))
+    P0 = _each_run("P0", P0, batch, (6, 6))
+    shapes = {
+        "x": (6,), "P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors), "nis": (),
+    }  # fmt: skip
+    wanted = {name: name in keep or name not in _OPTIONAL for name in shapes}
+    out = {
+        name: np.empty((runs if wanted[name] else 0, samples, *shape))
+        for name, shape in shapes.items()
+    }
+    out["updated"] = np.empty((runs, samples), bool)
+
+    # Here, and not above, so that importing the library does not load numba.
+    from ._ekf_loop import LANES, compiled
+
+    lanes = LANES if runs >= LANES else 1
+
+    def part(rows):
+        results = [value[rows] for value in out.values()]
+        compiled(lanes)(
+            z[rows], array.positions, array.doppler_per_speed, variance, Q, T, x0[rows], P0[rows],
+            lower, upper, *results,
+        )  # fmt: skip
+
+    workers = os.cpu_count() if workers is None else _checks.whole_number("workers", workers)
+    parts = _slices(runs, lanes, workers)
+    if len(parts) == 1:
+        part(parts[0])
+    else:
+        with ThreadPoolExecutor(workers) as pool:
+            list(pool.map(part, parts))
+    return Track(
+        **{
+            name: value.reshape(*batch, *value.shape[1:]) if wanted.get(name, True) else None
+            for name, value in out.items()
+        }
+    )
+
+
+def gate_bounds(gate, sensors, confidence=0.95):
+    """Return the bounds of the gate on NIS for 0, 1, ..., `sensors` measurements.
+
+    Parameters
+    ----------
+    gate : {None, "upper", "two-sided"}
+        See `ekf`.
+    sensors : int
+        Largest number of measurements N.
+    confidence : float
+        Probability that a measurement of a consistent filter passes.
+
+    Returns
+    -------
+    lower, upper : ndarray, shape (N + 1,)
+        A NIS passes if it is neither below `lower` nor above `upper`.
+
+    Raises
+    ------
+    ValueError
+        If `gate` is unknown or `confidence` not between 0 and 1.
+    """
+    _checks.one_of("gate", gate, (None, "upper", "two-sided"))
+    confidence = _checks.probability("confidence", confidence)
+    lower = np.full(sensors + 1, -np.inf)
+    upper = np.full(sensors + 1, np.inf)
+    if gate is not None:
+        from scipy.special import chdtri  # upper-tail quantile of chi-square
+
+        dof = np.arange(1, sensors + 1)
+        tail = (1 - confidence) / (1 if gate == "upper" else 2)
+        upper[1:] = chdtri(dof, tail)
+        if gate == "two-sided":
+            lower[1:] = chdtri(dof, 1 - tail)
+    return lower, upper
+
+
+def _measurements(z, array):
+    try:
+        z = np.asarray(z, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"z must be an array of real numbers, got {z!r}") from None
+    _checks.check_shape("z", z, (None, len(array)))
+    if not z.size:
+        raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
+    if np.isinf(z).any():
+        raise ValueError("z must be finite, or NaN where a sensor is missing, got inf")
+    return z
+
+
+def _variance(sigma_f, shape):
+    sigma_f = _checks.positive("sigma_f", sigma_f)
+    try:
+        return np.ascontiguousarray(np.broadcast_to(sigma_f**2, shape))
+    except ValueError:
+        raise ValueError(
+            f"sigma_f must broadcast to (K, N) = {shape}, got shape {sigma_f.shape}"
+        ) from None
+
+
+def _each_run(name, value, batch, shape):
+    try:
+        value = np.broadcast_to(value, (*batch, *shape))
+    except ValueError:
+        raise ValueError(
+            f"{name} must broadcast against the runs of z, {batch}, got shape {value.shape}"
+        ) from None
+    return np.ascontiguousarray(value).reshape(-1, *shape)
+
+
+def _slices(runs, lanes, workers):
+    """Return at most `workers` slices of whole groups of lanes."""
+    groups = -(-runs // lanes)
+    size = lanes * -(-groups // workers)
+    return [slice(first, first + size) for first in range(0, runs, size)]

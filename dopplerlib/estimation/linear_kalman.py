@@ -1,0 +1,135 @@
+"""The linear Kalman filter, for models that are linear and as a yardstick for those that are not."""
+
+import numpy as np
+
+from .. import _checks
+from .track import Track
+
+
+def kf_predict(x, P, F, Q):
+    """Return the predicted state and covariance: F x and F P F' + Q.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., n)
+        State estimates.
+    P : array_like, shape (..., n, n)
+        Their covariances.
+    F, Q : array_like, shape (n, n)
+        Transition matrix and covariance of the process noise.
+
+    Returns
+    -------
+    x : ndarray, shape (..., n)
+    P : ndarray, shape (..., n, n)
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Table 1.
+    """
+    return (F @ x[..., None])[..., 0], F @ P @ np.swapaxes(F, -1, -2) + Q
+
+
+def kf_update(x, P, z, H, R):
+    """Return the state and covariance after a measurement, in the form of Joseph.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., n)
+        Predicted states.
+    P : array_like, shape (..., n, n)
+        Predicted covariances.
+    z : array_like, shape (..., m)
+        Measurements.
+    H : array_like, shape (m, n)
+        Measurement matrix.
+    R : array_like, shape (m, m)
+        Covariance of the measurement noise.
+
+    Returns
+    -------
+    x : ndarray, shape (..., n)
+    P : ndarray, shape (..., n, n)
+    innovation : ndarray, shape (..., m)
+    S : ndarray, shape (..., m, m)
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Table 1; the covariance is (I - K H) P (I - K H)' + K R K' of Bucy
+    and Joseph (1968), which holds for any gain and keeps its symmetry.
+    """
+    Ht = np.swapaxes(H, -1, -2)
+    innovation = z - (H @ x[..., None])[..., 0]
+    S = H @ P @ Ht + R
+    K = np.swapaxes(np.linalg.solve(S, H @ P), -1, -2)
+    A = np.eye(x.shape[-1]) - K @ H
+    x = x + (K @ innovation[..., None])[..., 0]
+    P = A @ P @ np.swapaxes(A, -1, -2) + K @ R @ np.swapaxes(K, -1, -2)
+    return x, P, innovation, S
+
+
+def kf(z, F, Q, H, R, x0, P0):
+    """Filter whole records with a linear Kalman filter, many runs at once.
+
+    Every cycle predicts, then updates, like `ekf`.
+
+    Parameters
+    ----------
+    z : array_like, shape (..., K, m)
+        Measurements.
+    F, Q : array_like, shape (n, n)
+        Transition matrix; covariance of the process noise.
+    H : array_like, shape (m, n)
+        Measurement matrix.
+    R : array_like, shape (m, m)
+        Covariance of the measurement noise.
+    x0 : array_like, shape (..., n)
+        State one step before the first measurement; leading axes broadcast against those of `z`.
+    P0 : array_like, shape (..., n, n)
+        Its covariance.
+
+    Returns
+    -------
+    Track
+        Leading axes are those of `z`.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite, or `R` or `P0` is not positive definite.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Table 1, with a linear measurement; Kalman (1960).
+
+    Examples
+    --------
+    The mean of three equal measurements of a constant, with hardly any prior:
+
+    >>> track = kf([[1.0], [2.0], [3.0]], [[1]], [[0]], [[1]], [[1]], [0], [[1e12]])
+    >>> round(float(track.x[-1, 0]), 6), round(float(track.P[-1, 0, 0]), 6)
+    (2.0, 0.333333)
+    """
+    x0 = _checks.finite("x0", x0, (None,))
+    n = x0.shape[-1]
+    H = _checks.finite("H", H, (None, n))
+    m = H.shape[-2]
+    F = _checks.finite("F", F, (n, n))
+    Q = _checks.finite("Q", Q, (n, n))
+    R = _checks.covariance("R", R, m)
+    P0 = _checks.covariance("P0", P0, n)
+    z = _checks.finite("z", z, (None, m))
+
+    batch, samples = z.shape[:-2], z.shape[-2]
+    x, P = np.broadcast_to(x0, (*batch, n)), np.broadcast_to(P0, (*batch, n, n))
+    steps = []
+    for k in range(samples):
+        x, P = kf_predict(x, P, F, Q)
+        x, P, innovation, S = kf_update(x, P, z[..., k, :], H, R)
+        steps.append((x, P, innovation, S))
+    x, P, innovation, S = (
+        np.stack(values, axis=len(batch)) for values in zip(*steps, strict=True)
+    )
+    weighted = np.linalg.solve(S, innovation[..., None])[..., 0]
+    nis = np.sum(innovation * weighted, axis=-1)
+    return Track(x, P, innovation, S, nis, np.ones(nis.shape, bool))

@@ -1,0 +1,115 @@
+"""Innovations of an optimal filter have mean zero and no memory: the tests of both."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _checks
+
+
+@dataclass(frozen=True)
+class Whiteness:
+    """Autocorrelation of innovations and the test that it is zero.
+
+    Attributes
+    ----------
+    autocorrelation : ndarray, shape (..., lags, m)
+        At lags 1, 2, ...; of each component after division by its standard deviation.
+    statistic : ndarray, shape (...)
+        Ljung-Box statistic, summed over the components.
+    dof : int
+        Its degrees of freedom if the innovations are white: lags times m.
+    p_value : ndarray, shape (...)
+        Probability of a larger statistic if the innovations are white.
+    """
+
+    autocorrelation: np.ndarray
+    statistic: np.ndarray
+    dof: int
+    p_value: np.ndarray
+
+
+def innovation_mean(innovation, S):
+    """Return the time average of each innovation and its standard error if the filter is right.
+
+    Parameters
+    ----------
+    innovation : array_like, shape (..., K, m)
+        Innovations of a record.
+    S : array_like, shape (..., K, m, m)
+        Their covariances.
+
+    Returns
+    -------
+    mean : ndarray, shape (..., m)
+        Time average.
+    standard_error : ndarray, shape (..., m)
+        Standard deviation of `mean` for independent innovations of covariance `S`.
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not fit or a value is not finite.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Section 4: "mean-value of the innovation".
+    """
+    innovation, S = _record(innovation, S)
+    variance = np.diagonal(S, axis1=-2, axis2=-1)
+    samples = innovation.shape[-2]
+    return innovation.mean(axis=-2), np.sqrt(variance.sum(axis=-2)) / samples
+
+
+def innovation_whiteness(innovation, S, lags=20):
+    """Test whether innovations are uncorrelated in time.
+
+    Parameters
+    ----------
+    innovation : array_like, shape (..., K, m)
+        Innovations of a record.
+    S : array_like, shape (..., K, m, m)
+        Their covariances, which take out the correlation between components.
+    lags : int
+        Number of lags, less than K.
+
+    Returns
+    -------
+    Whiteness
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not fit, a value is not finite, or there are too few samples.
+
+    Notes
+    -----
+    Ljung and Box (1978). The components are decorrelated by the Cholesky factor of `S`.
+    """
+    from scipy.stats import chi2  # here: it takes longer to load than all the rest
+
+    innovation, S = _record(innovation, S)
+    samples, m = innovation.shape[-2:]
+    lags = _checks.whole_number("lags", lags)
+    if lags >= samples:
+        raise ValueError(f"lags must be less than the number of samples {samples}, got {lags}")
+    white = np.linalg.solve(np.linalg.cholesky(S), innovation[..., None])[..., 0]
+    white = white - white.mean(axis=-2, keepdims=True)
+    power = np.sum(white**2, axis=-2)
+    autocorrelation = np.stack(
+        [
+            np.sum(white[..., lag:, :] * white[..., :-lag, :], axis=-2) / power
+            for lag in range(1, lags + 1)
+        ],
+        axis=-2,
+    )
+    weight = samples * (samples + 2) / (samples - np.arange(1, lags + 1))
+    statistic = np.sum(weight[:, None] * autocorrelation**2, axis=(-2, -1))
+    dof = lags * m
+    return Whiteness(autocorrelation, statistic, dof, chi2.sf(statistic, dof))
+
+
+def _record(innovation, S):
+    innovation = _checks.finite("innovation", innovation, (None, None))
+    samples, m = innovation.shape[-2:]
+    return innovation, _checks.finite("S", S, (samples, m, m))

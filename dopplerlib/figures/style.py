@@ -1,0 +1,28 @@
+"""What all figures share: the style file, the colours by meaning, and a fresh figure."""
+
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+
+STYLE = Path(__file__).with_name("style.mplstyle")
+
+# One meaning, one colour, all through the book.
+OURS = "#0072B2"
+PUBLISHED = "#D55E00"
+TRUTH = "#222222"
+SENSOR = "#009E73"
+BOUND = "#777777"
+
+
+@contextmanager
+def styled(width=7.0, height=4.0):
+    """Give a new figure in the style of the book, of this size in inches.
+
+    The figure is not registered with pyplot: the function that made it returns it, and nothing
+    else holds it.
+    """
+    with plt.style.context(STYLE):
+        figure = plt.figure(figsize=(width, height))
+        plt.close(figure)
+        yield figure

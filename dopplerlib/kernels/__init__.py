@@ -1,0 +1,1 @@
+"""Numeric code printed by `dopplerlib.derive`: readable, committed, never edited by hand."""

@@ -1,0 +1,1 @@
+"""The world as numbers: sensors, Doppler shift, motion, scenarios, simulation."""

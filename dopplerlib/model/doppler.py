@@ -1,0 +1,91 @@
+"""Doppler shifts of states, and their derivatives, for all sensors of an array."""
+
+import numpy as np
+
+from .. import _checks
+from ..kernels import doppler as kernel
+
+
+def doppler_shift(x, array):
+    """Return the Doppler shift that every sensor sees.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 6)
+        States [x, y, z, v_x, v_y, v_z] in m and m/s.
+    array : RadarArray
+        The N sensors.
+
+    Returns
+    -------
+    ndarray, shape (..., N)
+        Doppler shifts in Hz, positive when target and sensor approach each other.
+
+    Raises
+    ------
+    ValueError
+        If `x` has another shape, is not finite, or lies on a sensor.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Eq 6, printed by `dopplerlib.derive`.
+
+    Examples
+    --------
+    One metre away and approaching at 1 m/s:
+
+    >>> from dopplerlib import RadarArray
+    >>> float(doppler_shift([1, 0, 0, -1, 0, 0], RadarArray([[0, 0, 0]]))[0])
+    160.0
+    """
+    return kernel.doppler_shift(*_arguments(x, array))
+
+
+def doppler_jacobian(x, array):
+    """Return the derivative of every sensor's Doppler shift with respect to the state.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 6)
+        States [x, y, z, v_x, v_y, v_z] in m and m/s.
+    array : RadarArray
+        The N sensors.
+
+    Returns
+    -------
+    ndarray, shape (..., N, 6)
+        Columns 0 to 2 in Hz per m, columns 3 to 5 in Hz per m/s.
+
+    Raises
+    ------
+    ValueError
+        If `x` has another shape, is not finite, or lies on a sensor.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Eq 7, printed by `dopplerlib.derive`.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray
+    >>> doppler_jacobian([1, 0, 0, -1, 0, 0], RadarArray([[0, 0, 0]])).tolist()
+    [[0.0, 0.0, 0.0, -160.0, 0.0, 0.0]]
+    """
+    _, *gradient = kernel.doppler_shift_and_gradient(*_arguments(x, array))
+    return np.stack(gradient, axis=-1)
+
+
+def check_clear_of_sensors(name, x, array):
+    """Raise if a position in `x`, shape (..., 6), is that of a sensor."""
+    for n, sensor in enumerate(array.positions):
+        if (x[..., :3] == sensor).all(axis=-1).any():
+            raise ValueError(
+                f"{name} must not lie on a sensor, got a position equal to that of sensor {n}, "
+                f"{sensor.tolist()}"
+            )
+
+
+def _arguments(x, array):
+    x = _checks.finite("x", x, (6,))
+    check_clear_of_sensors("x", x, array)
+    return *np.moveaxis(x[..., None, :], -1, 0), *array.positions.T, array.doppler_per_speed

@@ -1,0 +1,142 @@
+"""Where the sensors are, and the wavelength they use."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _checks
+
+_AXES = {"x": 0, "y": 1, "z": 2}
+
+
+@dataclass(frozen=True)
+class RadarArray:
+    """Fixed monostatic continuous-wave radar sensors on one platform.
+
+    Parameters
+    ----------
+    positions : array_like, shape (N, 3)
+        Sensor positions in m.
+    wavelength : float
+        Wavelength in m. The default, 12.5 mm, is the paper's 24 GHz with its 160 Hz per m/s.
+
+    Raises
+    ------
+    ValueError
+        If `positions` is not a finite (N, 3) array with at least one sensor, if two sensors
+        share a place, or if `wavelength` is not positive.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Eq 2 and Section 4.
+
+    Examples
+    --------
+    >>> RadarArray([[0, -0.1, 0], [0, 0.1, 0]]).doppler_per_speed
+    160.0
+    """
+
+    positions: np.ndarray
+    wavelength: float = 0.0125
+
+    def __post_init__(self):
+        """Check and freeze the fields."""
+        positions = _checks.finite("positions", self.positions, (None, 3)).copy()
+        if positions.ndim != 2 or not len(positions):
+            raise ValueError(f"positions must have shape (N, 3) with N >= 1, got {positions.shape}")
+        if len(np.unique(positions, axis=0)) < len(positions):
+            raise ValueError(f"positions must differ from one another, got {positions.tolist()}")
+        positions.flags.writeable = False
+        object.__setattr__(self, "positions", positions)
+        object.__setattr__(
+            self, "wavelength", _checks.positive_number("wavelength", self.wavelength)
+        )
+
+    def __len__(self):
+        """Return the number of sensors N."""
+        return len(self.positions)
+
+    def __eq__(self, other):
+        """Return whether `other` has the same positions and wavelength."""
+        if not isinstance(other, RadarArray):
+            return NotImplemented
+        return self.wavelength == other.wavelength and np.array_equal(
+            self.positions, other.positions
+        )
+
+    __hash__ = None
+
+    @property
+    def doppler_per_speed(self):
+        """Doppler shift of a radial speed of 1 m/s: 2 / wavelength, in Hz per m/s."""
+        return 2 / self.wavelength
+
+    @classmethod
+    def ring(cls, n, radius, phase=0.0, normal="x", wavelength=0.0125):
+        """Return `n` sensors at equal angles on a circle about the origin.
+
+        Parameters
+        ----------
+        n : int
+            Number of sensors.
+        radius : float
+            Radius in m.
+        phase : float
+            Angle of the first sensor in rad, counted from the axis that follows `normal`
+            (y for x, z for y, x for z) towards the one after it.
+        normal : {"x", "y", "z"}
+            Axis at right angles to the plane of the ring.
+        wavelength : float
+            Wavelength in m.
+
+        Raises
+        ------
+        ValueError
+            If a setting is not finite, not positive, or `normal` is not an axis.
+
+        Examples
+        --------
+        >>> RadarArray.ring(4, 0.2).positions.round(3)[:2].tolist()
+        [[0.0, 0.2, 0.0], [0.0, 0.0, 0.2]]
+        """
+        n = _checks.whole_number("n", n)
+        radius = _checks.positive_number("radius", radius)
+        angle = float(_checks.finite("phase", phase)) + 2 * np.pi * np.arange(n) / n
+        axis = _AXES[_checks.one_of("normal", normal, tuple(_AXES))]
+        positions = np.zeros((n, 3))
+        positions[:, (axis + 1) % 3] = radius * np.cos(angle)
+        positions[:, (axis + 2) % 3] = radius * np.sin(angle)
+        return cls(positions, wavelength)
+
+    @classmethod
+    def linear(cls, n, length, axis="y", wavelength=0.0125):
+        """Return `n` sensors at equal distances on a line through the origin, its centre.
+
+        Parameters
+        ----------
+        n : int
+            Number of sensors, at least 2.
+        length : float
+            Distance between the first and the last sensor in m.
+        axis : {"x", "y", "z"}
+            Axis along which the sensors stand.
+        wavelength : float
+            Wavelength in m.
+
+        Raises
+        ------
+        ValueError
+            If a setting is not finite, not positive, or `axis` is not an axis.
+
+        Examples
+        --------
+        >>> RadarArray.linear(3, 0.4).positions.tolist()
+        [[0.0, -0.2, 0.0], [0.0, 0.0, 0.0], [0.0, 0.2, 0.0]]
+        """
+        n = _checks.whole_number("n", n, least=2)
+        length = _checks.positive_number("length", length)
+        positions = np.zeros((n, 3))
+        positions[:, _AXES[_checks.one_of("axis", axis, tuple(_AXES))]] = np.linspace(
+            -length / 2, length / 2, n
+        )
+        return cls(positions, wavelength)

@@ -1,0 +1,47 @@
+"""Measurements of a scenario, with noise."""
+
+import numpy as np
+
+from .. import _checks
+from .doppler import doppler_shift
+
+
+def simulate(scenario, runs, *, rng):
+    """Return the true path and noisy Doppler measurements of it.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Sensors, path and noise.
+    runs : int
+        Number of independent records.
+    rng : numpy.random.Generator
+        Source of randomness. Every run draws from a child of its own, so run 3 is the same
+        whether 10 or 10 000 runs are asked for.
+
+    Returns
+    -------
+    truth : ndarray, shape (K, 6)
+        True states in m and m/s, the same in every run.
+    z : ndarray, shape (runs, K, N)
+        Doppler measurements in Hz.
+
+    Raises
+    ------
+    ValueError
+        If `runs` is not a positive whole number, or `rng` is not a generator.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Eqs 5 and 8: zero-mean white Gaussian noise, independent between
+    sensors.
+    """
+    runs = _checks.whole_number("runs", runs)
+    _checks.generator("rng", rng)
+    truth = scenario.truth
+    z = np.empty((runs, scenario.samples, len(scenario.array)))
+    for child, record in zip(rng.spawn(runs), z, strict=True):
+        child.standard_normal(out=record)
+    z *= scenario.sigma_f
+    z += doppler_shift(truth, scenario.array)
+    return truth, z

@@ -1,0 +1,1 @@
+"""One module per source document, assembling the library as that document does."""
