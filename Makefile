@@ -1,0 +1,93 @@
+# Reading the book needs one command (`make book`), testing it needs another (`make test`).
+# Both set up what they need in .venv, from environment.lock: exact versions, checked hashes.
+
+PYTHON ?= python3
+VENV := .venv
+PY := $(VENV)/bin/python
+BENCH := .venv-bench
+UV := $(shell command -v uv 2>/dev/null || echo .venv-uv/bin/uv)
+
+# A chapter's output must not depend on who executes it: no user profile, no other plotting
+# backend than the notebook's own, no thread count in the order of a floating-point sum.
+export IPYTHONDIR := $(CURDIR)/$(VENV)/ipython
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+unexport MPLBACKEND
+
+# $(call make-venv,folder,lock): an environment with what the lock holds. Byte code is left to the
+# first import: compiling all of it up front doubles the time and most of it is never read.
+define make-venv
+$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	{ echo "error: Python 3.11 or newer is needed, but $(PYTHON) is $$($(PYTHON) -V 2>&1);" \
+	"choose another one with: make PYTHON=python3.12" >&2; exit 1; }
+$(PYTHON) -m venv --clear $(1)
+$(1)/bin/python -m pip install -q --no-compile --no-deps --require-hashes $(3) -r $(2)
+endef
+
+.PHONY: help
+help:  ## show this list
+	@sed -n 's/^\([a-z-]*\):.*  ## /\1\t/p' $(MAKEFILE_LIST) | expand -t 18
+
+.PHONY: book
+book: $(VENV)/.ready  ## build the book: book/_build/html/index.html
+	$(VENV)/bin/jupyter-book build --quiet --all -W -n --keep-going book
+
+.PHONY: test
+test: lint book  ## check everything: style, book without warnings, tests, doctests, notebooks
+	$(PY) -m pytest -n logical --maxprocesses 4 --dist loadfile
+
+.PHONY: lint
+lint: $(VENV)/.ready  ## check style and formatting
+	$(VENV)/bin/ruff check
+	$(VENV)/bin/ruff format --check
+
+.PHONY: format
+format: $(VENV)/.ready  ## repair what can be repaired of style and formatting
+	$(VENV)/bin/ruff check --fix
+	$(VENV)/bin/ruff format
+
+.PHONY: notebooks
+notebooks: $(VENV)/.ready  ## execute the chapters in place
+	$(PY) tools/notebooks.py
+
+.PHONY: notebooks-check
+notebooks-check: $(VENV)/.ready  ## execute the chapters again and compare every byte
+	$(PY) tools/notebooks.py --check
+
+.PHONY: kernels
+kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
+	$(PY) -m dopplerlib.derive
+
+.PHONY: bench
+bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement
+	$(BENCH)/bin/python benchmarks/ekf.py
+
+.PHONY: lock
+lock: $(UV)  ## renew environment.lock and benchmarks/requirements.lock
+	$(UV) pip compile $(LOCK_OPTIONS) requirements.in -o environment.lock
+	$(UV) pip compile $(LOCK_OPTIONS) -c environment.lock benchmarks/requirements.in \
+		-o benchmarks/requirements.lock
+
+.PHONY: clean
+clean:  ## remove everything that the other targets made
+	rm -rf $(VENV) $(BENCH) .venv-uv book/_build *.egg-info .hypothesis .ruff_cache
+	find dopplerlib book tests tools benchmarks -name __pycache__ -prune -exec rm -rf {} +
+
+# One lock for every platform and every Python from 3.11 on, without the address of an index.
+LOCK_OPTIONS := --quiet --upgrade --universal --fork-strategy fewest --python-version 3.11 \
+	--generate-hashes --no-annotate --no-header --no-emit-index-url
+
+$(VENV)/.ready: environment.lock pyproject.toml
+	$(call make-venv,$(VENV),environment.lock,--only-binary :all:)
+	$(PY) -m pip install -q --no-deps --no-build-isolation --no-index -e .
+	@touch $@
+
+$(BENCH)/.ready: benchmarks/requirements.lock pyproject.toml
+	$(call make-venv,$(BENCH),benchmarks/requirements.lock,)
+	$(BENCH)/bin/python -m pip install -q --no-deps --no-build-isolation --no-index -e .
+	@touch $@
+
+.venv-uv/bin/uv:
+	$(PYTHON) -m venv --clear .venv-uv
+	.venv-uv/bin/python -m pip install -q uv

@@ -1,0 +1,164 @@
+"""Execute the chapters of the book in place, or check that doing so would change nothing.
+
+A chapter is stored with its outputs, so the same sources must give the same file: the kernel runs
+with fixed settings and alone on one thread, and whatever else a run leaves behind (times, versions,
+the name of the machine's kernel) is removed.
+"""
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError
+
+ROOT = Path(__file__).resolve().parent.parent
+FIXED = {
+    "PYTHONHASHSEED": "0",
+    "SOURCE_DATE_EPOCH": "0",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "PYDEVD_DISABLE_FILE_VALIDATION": "1",  # else a warning on stderr, from Python 3.12 on
+}
+METADATA = {
+    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+    "language_info": {"name": "python", "pygments_lexer": "ipython3"},
+}
+TRANSIENT = ("execution", "collapsed", "ExecuteTime")
+
+
+class ChapterError(Exception):
+    """A chapter failed, or printed what no reader should see."""
+
+
+def chapters(book=ROOT / "book"):
+    """Return the notebooks of the book, without copies made by a build or an editor."""
+    return sorted(
+        path
+        for path in book.rglob("*.ipynb")
+        if not any(part.startswith(("_", ".")) for part in path.relative_to(book).parts)
+    )
+
+
+def read(path):
+    """Read a notebook; a cell without an id gets one that depends on its place only."""
+    content = json.loads(path.read_text(encoding="utf8"))
+    content["nbformat_minor"] = max(5, content["nbformat_minor"])
+    used = {cell["id"] for cell in content["cells"] if "id" in cell}
+    for place, cell in enumerate(content["cells"]):
+        if "id" not in cell:
+            cell["id"] = next(i for i in _names(f"cell-{place:02d}") if i not in used)
+            used.add(cell["id"])
+    return nbformat.from_dict(content)
+
+
+def _names(stem):
+    yield stem
+    number = 1
+    while True:
+        yield f"{stem}-{number}"
+        number += 1
+
+
+def execute(path, timeout):
+    """Return the text of the notebook file as a fresh execution would leave it."""
+    nb = read(path)
+    for cell in nb.cells:
+        if cell.cell_type == "code":  # an empty cell is never run: it must not keep an old count
+            cell.execution_count, cell.outputs = None, []
+    with tempfile.TemporaryDirectory() as profile:
+        env = {k: v for k, v in os.environ.items() if k != "MPLBACKEND"} | FIXED
+        client = NotebookClient(
+            nb,
+            timeout=timeout,
+            kernel_name="python3",
+            record_timing=False,
+            coalesce_streams=True,
+            resources={"metadata": {"path": str(path.parent)}},
+        )
+        client.execute(env=env | {"IPYTHONDIR": profile})
+    nb.metadata = nbformat.from_dict(METADATA)
+    for number, cell in enumerate(nb.cells):
+        for key in TRANSIENT:
+            cell.metadata.pop(key, None)
+        for output in cell.get("outputs", []):
+            if output.output_type == "stream" and output.name == "stderr":
+                raise ChapterError(f"cell {number} ({cell.id}) wrote to stderr:\n{output.text}")
+    nbformat.validate(nb)
+    return nbformat.writes(nb, indent=1).rstrip("\n") + "\n"
+
+
+def write(path, text):
+    """Replace the file in one step: an interrupted run leaves the old one."""
+    temporary = path.with_suffix(".ipynb.tmp")
+    temporary.write_text(text, encoding="utf8", newline="\n")
+    temporary.replace(path)
+
+
+def differences(old, new):
+    """Describe cell by cell what differs between two texts of the same notebook."""
+    if old == new:
+        return []
+    old_nb, new_nb = json.loads(old), json.loads(new)
+    found = []
+    for number, (was, now) in enumerate(zip(old_nb["cells"], new_nb["cells"], strict=True)):
+        where = f"cell {number} ({now['id']})"
+        if was.get("execution_count") != now.get("execution_count"):
+            count = was.get("execution_count")
+            found.append(f"{where}: {'was not executed' if count is None else 'other count'}")
+        elif _without_images(was.get("outputs")) != _without_images(now.get("outputs")):
+            found.append(f"{where}: text of the output differs")
+        elif was.get("outputs") != now.get("outputs"):
+            found.append(f"{where}: image only")
+        elif was != now:
+            found.append(f"{where}: metadata or id differs")
+    return found or ["only the layout or the metadata of the file differs"]
+
+
+def _without_images(outputs):
+    return [
+        {
+            key: {mime: data for mime, data in value.items() if not mime.startswith("image/")}
+            if key == "data"
+            else value
+            for key, value in output.items()
+        }
+        for output in outputs or []
+    ]
+
+
+def main(argv=None):
+    """Return the number of notebooks that failed or, with --check, differ."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="compare only, write nothing")
+    parser.add_argument("--timeout", type=int, default=300, help="seconds a cell may take")
+    parser.add_argument("notebooks", nargs="*", type=Path, help="default: all of the book")
+    options = parser.parse_args(argv)
+    bad = 0
+    for path in options.notebooks or chapters():
+        print(f"{path.name} ...", end=" ", file=sys.stderr, flush=True)
+        start = time.perf_counter()
+        try:
+            new = execute(path, options.timeout)
+        except (CellExecutionError, ChapterError, TimeoutError) as error:
+            bad += 1
+            print(f"failed\n{error}", file=sys.stderr)
+            continue
+        print(f"{time.perf_counter() - start:.1f} s", file=sys.stderr)
+        if options.check:
+            found = differences(path.read_text(encoding="utf8"), new)
+            bad += bool(found)
+            for line in found:
+                print(f"{path}: {line}")
+        else:
+            write(path, new)
+    return bad
+
+
+if __name__ == "__main__":
+    sys.exit(bool(main()))
