@@ -51,12 +51,18 @@ class PublishedFigure6:
     skipped : ndarray of bool, shape (1001,)
         Samples at which the state was only predicted. The paper does not say so: inferred from
         the curves, and unknown (False) at the first sample.
+    path_time : ndarray, shape (51,)
+        Times of the estimated positions drawn in the scene.
+    path : ndarray, shape (51, 3)
+        These positions in m, inverted from the 3-D view with the help of the error curves.
     """
 
     time: np.ndarray
     error: np.ndarray
     nis: np.ndarray
     skipped: np.ndarray
+    path_time: np.ndarray
+    path: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -98,7 +104,7 @@ def table2():
     -------
     Table2
     """
-    printed = json.loads((DATA / "table2.json").read_text(encoding="utf-8"))
+    printed = _json("table2.json")
     names = ("x", "y", "z", "vx", "vy", "vz")
     return Table2(
         *(
@@ -115,14 +121,29 @@ def published_figure6():
     -------
     PublishedFigure6
     """
+    T = scenario().T
     errors = np.genfromtxt(DATA / "fig6_errors.csv", delimiter=",", names=True)
     nis = np.genfromtxt(DATA / "fig6_nis.csv", delimiter=",", names=True)
+    markers = _json("fig6_geometry.json")["estimated_path_markers"]["markers"]
     return PublishedFigure6(
-        time=(nis["sample"] - 1) * scenario().T,
+        time=(nis["sample"] - 1) * T,
         error=np.stack([errors[f"e{axis}_cm"] for axis in "xyz"], axis=-1) / 100,
         nis=nis["nis"],
         skipped=nis["update_skipped"] == 1,
+        path_time=np.array([(marker["sample"] - 1) * T for marker in markers]),
+        path=np.array([marker["est_position_m"] for marker in markers]),
     )
+
+
+def quoted():
+    """Return the numbers that Table 2 and Section 4 quote in words, by name.
+
+    Returns
+    -------
+    dict
+        Units are in the names; see ``data/mittermaier2016/README.md``.
+    """
+    return _json("table2.json")["quoted"]
 
 
 def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
@@ -174,3 +195,7 @@ def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
         keep=keep,
     )
     return Figure6(s.time, truth, track, np.abs(track.x - truth)[..., :3])
+
+
+def _json(name):
+    return json.loads((DATA / name).read_text(encoding="utf-8"))
