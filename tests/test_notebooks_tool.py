@@ -7,7 +7,7 @@ import pytest
 
 from tools import notebooks
 
-FIGURE = "import matplotlib.pyplot as plt\n\nplt.plot([0, 1]);"
+FIGURE = "from IPython.display import display\n\ndisplay({'image/png': 'iVBO'}, raw=True)"
 
 
 @pytest.fixture
