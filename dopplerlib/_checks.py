@@ -31,6 +31,17 @@ def check_shape(name, array, shape):
         raise ValueError(f"{name} must have shape (..., {wanted}), got {array.shape}")
 
 
+def check_broadcast(name, shape, other_name, other_shape):
+    """Raise unless the leading axes of two arguments broadcast against each other."""
+    try:
+        np.broadcast_shapes(shape, other_shape)
+    except ValueError:
+        raise ValueError(
+            f"{name} must have leading axes that broadcast against {other_shape} of {other_name}, "
+            f"got {shape}"
+        ) from None
+
+
 def positive(name, value, shape=None):
     """Return `value` as a float array, or raise if it is not finite and positive."""
     array = finite(name, value, shape)

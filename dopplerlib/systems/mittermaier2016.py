@@ -51,9 +51,10 @@ class PublishedFigure6:
     skipped : ndarray of bool, shape (1001,)
         Samples at which the state was only predicted. The paper does not say so: inferred from
         the curves, and unknown (False) at the first sample.
-    path_time : ndarray, shape (51,)
-        Times of the estimated positions drawn in the scene.
-    path : ndarray, shape (51, 3)
+    path_time : ndarray, shape (50,)
+        Times of the estimated positions drawn in the scene, from sample 21 on. The figure has one
+        more at the first sample, for which the error curves cannot decide on the position.
+    path : ndarray, shape (50, 3)
         These positions in m, inverted from the 3-D view with the help of the error curves.
     """
 
