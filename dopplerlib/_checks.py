@@ -50,12 +50,17 @@ def positive(name, value, shape=None):
     return array
 
 
-def positive_number(name, value):
-    """Return `value` as a float, or raise if it is not one finite positive number."""
-    array = positive(name, value)
+def one_number(name, value, check=finite):
+    """Return `value` as a float, or raise if it is not one number that passes `check`."""
+    array = check(name, value)
     if array.ndim:
         raise ValueError(f"{name} must be one number, got an array of shape {array.shape}")
     return float(array)
+
+
+def positive_number(name, value):
+    """Return `value` as a float, or raise if it is not one finite positive number."""
+    return one_number(name, value, positive)
 
 
 def whole_number(name, value, least=1):

@@ -58,10 +58,11 @@ class Scenario:
     def __post_init__(self):
         """Check and freeze the fields."""
         x0 = _checks.finite("x0", self.x0, (6,)).copy()
-        if x0.ndim != 1:
-            raise ValueError(f"x0 must have shape (6,), got {x0.shape}")
-        check_clear_of_sensors("x0", x0, self.array)
         P0 = _checks.covariance("P0", self.P0, 6).copy()
+        for name, array, shape in [("x0", x0, (6,)), ("P0", P0, (6, 6))]:
+            if array.shape != shape:
+                raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
+        check_clear_of_sensors("x0", x0, self.array)
         x0.flags.writeable = P0.flags.writeable = False
         object.__setattr__(self, "x0", x0)
         object.__setattr__(self, "P0", P0)
