@@ -55,9 +55,10 @@ class PublishedFigure6:
         Initial estimate that the drawn marker implies: its x in m, the rest as in Table 2.
     first_error : ndarray, shape (3,)
         Absolute position errors of the first sample in m; that of x from the 3-D view.
-    path_time : ndarray, shape (51,)
-        Times of the estimated positions drawn in the scene.
-    path : ndarray, shape (51, 3)
+    path_time : ndarray, shape (50,)
+        Times of the estimated positions drawn in the scene, from sample 21 on. The figure has one
+        more at the first sample, for which the error curves cannot decide on the position.
+    path : ndarray, shape (50, 3)
         These positions in m, inverted from the 3-D view with the help of the error curves.
     """
 
