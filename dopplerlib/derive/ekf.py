@@ -59,7 +59,7 @@ def predict_block():
     return Block(
         name="predict",
         summary="Time update: x = F x, P = F P F' + Q (Table 1).",
-        inputs=(*STATE, *COVARIANCE, *PROCESS_NOISE),
+        inputs=(*STATE, *COVARIANCE, *PROCESS_NOISE, T),
         stages=(
             Stage("state", list(zip(_new(STATE), state, strict=True))),
             Stage("covariance", list(zip(_new(COVARIANCE), covariance, strict=True))),
@@ -95,17 +95,16 @@ def update_block():
         "gain k, correction, covariance P - k u', NIS",
         [
             *zip(gain, k, strict=True),
-            *zip(_new(CORRECTION), [c_i + k_i * e for c_i, k_i in zip(c, gain, strict=True)],
-                 strict=True),
+            *zip(_new(CORRECTION), c + sp.Matrix(gain) * e, strict=True),
             *zip(_new(COVARIANCE), [covariance[i, j] for i, j in UPPER], strict=True),
             (*_new([NIS]), NIS + e * e * weight),
         ],
     )
+    state = (*STATE, *COVARIANCE, *CORRECTION, NIS, MEASUREMENT, SEEN)
     return Block(
         name="update",
         summary="Measurement update by one sensor (Table 1, Eqs 6, 7, 14).",
-        inputs=(*STATE, *COVARIANCE, *CORRECTION, NIS, MEASUREMENT, SEEN, VARIANCE, *SENSOR,
-                DOPPLER_PER_SPEED),
+        inputs=(*state, *SENSOR, DOPPLER_PER_SPEED, VARIANCE),
         stages=(line_of_sight_stage(), gradient_stage(), conditional, correct),
         outputs=(*_new(COVARIANCE), *_new(CORRECTION), *_new([NIS]), INNOVATION, *GRADIENT),
     )

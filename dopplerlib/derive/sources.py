@@ -3,7 +3,7 @@
 import sympy as sp
 
 from . import ekf
-from .doppler import DOPPLER_PER_SPEED, GRADIENT, SENSOR, STATE, gradient_block, shift_block
+from .doppler import GRADIENT, STATE, gradient_block, shift_block
 from .printers import python_function, python_lanes
 
 _HEAD = '''"""{title}
@@ -50,7 +50,6 @@ def _ekf():
             rows[symbol] = rows[sp.Symbol(f"{symbol.name}_new", real=True)] = row
         start += len(symbols)
     layout.append(f"ROWS = {start}")
-    parameters = [*map(str, SENSOR), str(DOPPLER_PER_SPEED), str(ekf.VARIANCE)]
     return "\n".join(
         [
             _head("One cycle of the EKF for constant velocity and Doppler measurements."),
@@ -59,8 +58,8 @@ def _ekf():
             "# triangle is kept, row by row.",
             *layout,
             "\n",
-            python_lanes(ekf.predict_block(), rows, [str(ekf.T)]) + "\n",
-            python_lanes(ekf.update_block(), rows, parameters),
+            python_lanes(ekf.predict_block(), rows) + "\n",
+            python_lanes(ekf.update_block(), rows),
         ]
     )
 

@@ -179,7 +179,7 @@ def update(work, lanes, lane, s_x, s_y, s_z, doppler_per_speed, variance):
     d_x = s_x - x
     d_y = s_y - y
     d_z = s_z - z
-    inverse_range = 1/sqrt((d_x*d_x) + (d_y*d_y) + (d_z*d_z))
+    inverse_range = 1/sqrt(d_x*d_x + d_y*d_y + d_z*d_z)
     # Doppler shift, Eq 6, and its gradient, Eq 7
     t0 = d_x*v_x + d_y*v_y + d_z*v_z
     t1 = doppler_per_speed*inverse_range
