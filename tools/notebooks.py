@@ -54,7 +54,7 @@ def read(path):
         if "id" not in cell:
             cell["id"] = next(i for i in _names(f"cell-{place:02d}") if i not in used)
             used.add(cell["id"])
-    return nbformat.from_dict(content)
+    return nbformat.reads(json.dumps(content), as_version=4)
 
 
 def _names(stem):
@@ -79,6 +79,7 @@ def execute(path, timeout):
             kernel_name="python3",
             record_timing=False,
             coalesce_streams=True,
+            extra_arguments=["--log-level=ERROR"],
             resources={"metadata": {"path": str(path.parent)}},
         )
         client.execute(env=env | {"IPYTHONDIR": profile})

@@ -88,30 +88,32 @@ def python_function(block):
     return _def(block.name, _names(block.inputs, printer), body)
 
 
-def python_lanes(block, rows):
-    """Return `block` as a Python function on a work array, for one lane of many.
+def python_lanes(block, places):
+    """Return `block` as a Python function on work arrays, for one lane of many.
 
-    Lane `lane` of quantity i stands at ``work[i * lanes + lane]``. With `work` flat, numba turns a
-    loop over lanes into vector instructions. With ``lanes=1, lane=0`` and `work` of shape
-    (rows, ...) the same text runs on NumPy arrays, and with `work` of shape (rows,) on numbers.
+    Lane `lane` of the quantity in row i of an array `work` stands at ``work[i * lanes + lane]``.
+    With `work` flat, numba turns a loop over lanes into vector instructions. With
+    ``lanes=1, lane=0`` and `work` of shape (rows, ...) the same text runs on NumPy arrays, and
+    with `work` of shape (rows,) on numbers.
 
     Parameters
     ----------
     block : Block
-        Its outputs are rows of `work`. Its inputs are rows too, or else arguments of the function.
-    rows : dict
-        Row number of each symbol that lives in `work`.
+        Its outputs have places. Its inputs have places too, or else are arguments of the function.
+    places : dict
+        Name of the array and row number of each symbol that lives in an array.
     """
     printer = _Python()
-    inputs = [symbol for symbol in block.inputs if symbol in rows]
-    arguments = [symbol for symbol in block.inputs if symbol not in rows]
+    inputs = [symbol for symbol in block.inputs if symbol in places]
+    arguments = [symbol for symbol in block.inputs if symbol not in places]
+    arrays = dict.fromkeys(places[symbol][0] for symbol in (*inputs, *block.outputs))
     body = [
         *_docstring(block),
-        *(f"{printer.doprint(symbol)} = {_place(rows[symbol])}" for symbol in inputs),
+        *(f"{printer.doprint(symbol)} = {_place(*places[symbol])}" for symbol in inputs),
         *_commented(block, printer),
-        *(f"{_place(rows[symbol])} = {printer.doprint(symbol)}" for symbol in block.outputs),
+        *(f"{_place(*places[symbol])} = {printer.doprint(symbol)}" for symbol in block.outputs),
     ]
-    return _def(block.name, ["work", "lanes", "lane", *_names(arguments, printer)], body)
+    return _def(block.name, [*arrays, "lanes", "lane", *_names(arguments, printer)], body)
 
 
 def c99_function(block):
@@ -165,8 +167,8 @@ def _commented(block, printer):
             yield f"{printer.doprint(name)} = {printer.doprint(value)}"
 
 
-def _place(row):
-    return f"work[{row} * lanes + lane]"
+def _place(array, row):
+    return f"{array}[{row} * lanes + lane]"
 
 
 def _def(name, arguments, body):

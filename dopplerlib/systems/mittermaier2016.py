@@ -1,0 +1,213 @@
+"""Mittermaier et al. (2016): six Doppler sensors on a ring, one target, an EKF.
+
+Extended Kalman Doppler tracking and model determination for multi-sensor short-range radar,
+Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
+"""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .. import _checks
+from ..estimation.extended_kalman import ekf
+from ..estimation.track import Track
+from ..model.motion import constant_velocity
+from ..model.scenario import Scenario
+from ..model.simulation import simulate
+
+DATA = Path(__file__).parents[2] / "data" / "mittermaier2016"
+
+
+@dataclass(frozen=True)
+class Table2:
+    """The start of the simulation example as Table 2 prints it.
+
+    Attributes
+    ----------
+    x0 : ndarray, shape (6,)
+        True initial state in m and m/s.
+    x_ml : ndarray, shape (6,)
+        Estimate from ten samples by maximum likelihood.
+    """
+
+    x0: np.ndarray
+    x_ml: np.ndarray
+
+
+@dataclass(frozen=True)
+class PublishedFigure6:
+    """The curves of Fig 6, read off the paper's vector graphics.
+
+    Attributes
+    ----------
+    time : ndarray, shape (1001,)
+        Time of each sample in s.
+    error : ndarray, shape (1001, 3)
+        Absolute position errors in m; NaN above the clipped axis where they cannot be known.
+    nis : ndarray, shape (1001,)
+        Normalized innovation squared.
+    skipped : ndarray of bool, shape (1001,)
+        Samples at which the state was only predicted. The paper does not say so: inferred from
+        the curves, and unknown (False) at the first sample.
+    start : ndarray, shape (6,)
+        Initial estimate that the drawn marker implies: its x in m, the rest as in Table 2.
+    first_error : ndarray, shape (3,)
+        Absolute position errors of the first sample in m; that of x from the 3-D view.
+    path_time : ndarray, shape (50,)
+        Times of the estimated positions drawn in the scene, from sample 21 on. The figure has one
+        more at the first sample, for which the error curves cannot decide on the position.
+    path : ndarray, shape (50, 3)
+        These positions in m, inverted from the 3-D view with the help of the error curves.
+    """
+
+    time: np.ndarray
+    error: np.ndarray
+    nis: np.ndarray
+    skipped: np.ndarray
+    start: np.ndarray
+    first_error: np.ndarray
+    path_time: np.ndarray
+    path: np.ndarray
+
+
+@dataclass(frozen=True)
+class Figure6:
+    """Our runs of the simulation example.
+
+    Attributes
+    ----------
+    time : ndarray, shape (K,)
+        Time of each sample in s.
+    truth : ndarray, shape (K, 6)
+        True states.
+    track : Track
+        Estimates, leading axis ``runs``.
+    error : ndarray, shape (runs, K, 3)
+        Absolute position errors in m.
+    """
+
+    time: np.ndarray
+    truth: np.ndarray
+    track: Track
+    error: np.ndarray
+
+
+def scenario():
+    """Return the simulation example of Section 4 and Table 2.
+
+    Returns
+    -------
+    Scenario
+    """
+    return Scenario.from_toml(DATA / "scenario.toml")
+
+
+def table2():
+    """Return the two states that Table 2 prints.
+
+    Returns
+    -------
+    Table2
+    """
+    printed = _json("table2.json")
+    names = ("x", "y", "z", "vx", "vy", "vz")
+    return Table2(
+        *(
+            np.array([printed[key][name] for name in names])
+            for key in ("true_initial_state", "estimated_initial_state_mle")
+        )
+    )
+
+
+def published_figure6():
+    """Return the digitised curves of Fig 6.
+
+    Returns
+    -------
+    PublishedFigure6
+    """
+    T = scenario().T
+    errors = np.genfromtxt(DATA / "fig6_errors.csv", delimiter=",", names=True)
+    nis = np.genfromtxt(DATA / "fig6_nis.csv", delimiter=",", names=True)
+    geometry = _json("fig6_geometry.json")
+    initial, markers = geometry["initial"], geometry["estimated_path_markers"]["markers"]
+    start = table2().x_ml.copy()
+    start[0] = initial["x_hat_implied_by_mle_marker_m"]["from_u"]
+    return PublishedFigure6(
+        time=(nis["sample"] - 1) * T,
+        error=np.stack([errors[f"e{axis}_cm"] for axis in "xyz"], axis=-1) / 100,
+        nis=nis["nis"],
+        skipped=nis["update_skipped"] == 1,
+        start=start,
+        first_error=np.array([initial["sample1_abs_error_cm"][axis] / 100 for axis in "xyz"]),
+        path_time=np.array([(marker["sample"] - 1) * T for marker in markers]),
+        path=np.array([marker["est_position_m"] for marker in markers]),
+    )
+
+
+def quoted():
+    """Return the numbers that Table 2 and Section 4 quote in words, by name.
+
+    Returns
+    -------
+    dict
+        Units are in the names; see ``data/mittermaier2016/README.md``.
+    """
+    return _json("table2.json")["quoted"]
+
+
+def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
+    """Run the simulation example of Fig 6.
+
+    Parameters
+    ----------
+    runs : int
+        Number of independent measurement records.
+    rng : numpy.random.Generator
+        Source of the measurement noise, see `simulate`.
+    gate : {None, "upper", "two-sided"}
+        See `ekf`.
+    start : array_like, shape (6,) or (runs, 6), optional
+        Estimate of the state at the first sample; the one that Table 2 prints if None.
+    P0 : array_like, shape (6, 6), optional
+        Its covariance; that of the scenario, 0.1 I, if None.
+    keep : sequence of str
+        Fields of the track that are wanted, see `ekf`.
+
+    Returns
+    -------
+    Figure6
+
+    Raises
+    ------
+    ValueError
+        If an argument is refused by `simulate` or `ekf`.
+
+    Notes
+    -----
+    `ekf` predicts before it updates. So that the prediction for the first sample is `start`, it
+    is moved back by one sampling interval (0.75 mm).
+    """
+    s = scenario()
+    start = table2().x_ml if start is None else _checks.finite("start", start, (6,))
+    F, _ = constant_velocity(s.T, s.sigma_p)
+    before = np.linalg.solve(F, start[..., None])[..., 0]
+    truth, z = simulate(s, runs, rng=rng)
+    track = ekf(
+        z,
+        s.array,
+        before,
+        s.P0 if P0 is None else P0,
+        s.T,
+        s.sigma_p,
+        s.sigma_f,
+        gate=gate,
+        keep=keep,
+    )
+    return Figure6(s.time, truth, track, np.abs(track.x - truth)[..., :3])
+
+
+def _json(name):
+    return json.loads((DATA / name).read_text(encoding="utf-8"))
