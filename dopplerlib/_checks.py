@@ -93,8 +93,9 @@ def covariance(name, value, n):
     array = finite(name, value, (n, n))
     asymmetry = np.abs(array - array.swapaxes(-1, -2)).max(initial=0.0)
     if asymmetry > 1e-12 * np.abs(array).max(initial=0.0):
-        raise ValueError(f"{name} must be symmetric, got a difference of {asymmetry:.3g} across "
-                         "the diagonal")
+        raise ValueError(
+            f"{name} must be symmetric, got a difference of {asymmetry:.3g} across the diagonal"
+        )
     try:
         np.linalg.cholesky(array)
     except np.linalg.LinAlgError:
@@ -108,6 +109,8 @@ def covariance(name, value, n):
 def generator(name, value):
     """Return `value`, or raise if it is not a `numpy.random.Generator`."""
     if not isinstance(value, np.random.Generator):
-        raise ValueError(f"{name} must be a numpy.random.Generator, for example "
-                         f"numpy.random.default_rng(1), got {value!r}")
+        raise ValueError(
+            f"{name} must be a numpy.random.Generator, for example "
+            f"numpy.random.default_rng(1), got {value!r}"
+        )
     return value

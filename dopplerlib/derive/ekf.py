@@ -95,8 +95,11 @@ def update_block():
         "gain k, correction, covariance P - k u', NIS",
         [
             *zip(gain, k, strict=True),
-            *zip(_new(CORRECTION), [c_i + k_i * e for c_i, k_i in zip(c, gain, strict=True)],
-                 strict=True),
+            *zip(
+                _new(CORRECTION),
+                [c_i + k_i * e for c_i, k_i in zip(c, gain, strict=True)],
+                strict=True,
+            ),
             *zip(_new(COVARIANCE), [covariance[i, j] for i, j in UPPER], strict=True),
             (*_new([NIS]), NIS + e * e * weight),
         ],
@@ -104,8 +107,17 @@ def update_block():
     return Block(
         name="update",
         summary="Measurement update by one sensor (Table 1, Eqs 6, 7, 14).",
-        inputs=(*STATE, *COVARIANCE, *CORRECTION, NIS, MEASUREMENT, SEEN, VARIANCE, *SENSOR,
-                DOPPLER_PER_SPEED),
+        inputs=(
+            *STATE,
+            *COVARIANCE,
+            *CORRECTION,
+            NIS,
+            MEASUREMENT,
+            SEEN,
+            VARIANCE,
+            *SENSOR,
+            DOPPLER_PER_SPEED,
+        ),
         stages=(line_of_sight_stage(), gradient_stage(), conditional, correct),
         outputs=(*_new(COVARIANCE), *_new(CORRECTION), *_new([NIS]), INNOVATION, *GRADIENT),
     )

@@ -1,4 +1,4 @@
-"""Consistency of a filter: whether its errors have the size that it claims."""
+"""Consistency of a filter: its errors should have the size that it claims."""
 
 import numpy as np
 
