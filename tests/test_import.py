@@ -35,7 +35,8 @@ import numpy
 from dopplerlib import RadarArray, doppler_jacobian, doppler_shift, constant_velocity, simulate
 from dopplerlib import Scenario, Track
 doppler_jacobian([1, 0, 0, 0, 0, 1], RadarArray.ring(6, 0.2))
-simulate(Scenario.from_toml("data/mittermaier2016/scenario.toml"), 1, rng=numpy.random.default_rng(1))
+scenario = Scenario.from_toml("data/mittermaier2016/scenario.toml")
+simulate(scenario, 1, rng=numpy.random.default_rng(1))
 """
     assert loaded_after(code) == []
 
@@ -69,7 +70,7 @@ def sections(value):
     """Return {title: lines} of a numpydoc docstring."""
     doc = inspect.getdoc(value)
     parts = re.split(r"^(\w[\w ]*)\n-+\n", doc, flags=re.MULTILINE)
-    for title, text in zip(parts[1::2], parts[2::2], strict=True):
+    for title in parts[1::2]:
         assert f"{title}\n{'-' * len(title)}\n" in doc, f"{title} is underlined at another length"
     return dict(zip(parts[1::2], parts[2::2], strict=True))
 
