@@ -56,8 +56,8 @@ class PublishedFigure6:
     first_error : ndarray, shape (3,)
         Absolute position errors of the first sample in m; that of x from the 3-D view.
     path_time : ndarray, shape (50,)
-        Times of the estimated positions drawn in the scene, from sample 21 on. One more is drawn
-        at the first sample, where the error curves do not tell the position.
+        Times of the estimated positions drawn in the scene, from sample 21 on. The figure has one
+        more at the first sample, for which the error curves cannot decide on the position.
     path : ndarray, shape (50, 3)
         These positions in m, inverted from the 3-D view with the help of the error curves.
     """
