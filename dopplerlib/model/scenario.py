@@ -88,7 +88,7 @@ class Scenario:
 
     @property
     def truth(self):
-        """True states at the samples, shape (K, 6): a straight path at constant velocity."""
+        """True states at the samples, shape (K, 6), on a straight path at constant velocity."""
         path = np.tile(self.x0, (self.samples, 1))
         path[:, :3] += self.time[:, None] * self.x0[3:]
         return path
