@@ -16,6 +16,7 @@ DOPPLER_PER_SPEED = sp.Symbol("doppler_per_speed", positive=True)
 
 LINE_OF_SIGHT = sp.symbols("d_x d_y d_z", real=True)
 INVERSE_RANGE = sp.Symbol("inverse_range", positive=True)
+RANGE = sp.Symbol("rho", positive=True)  # for the reader's formulas only
 
 SHIFT = sp.Symbol("shift", real=True)
 GRADIENT = sp.symbols("h_x h_y h_z h_vx h_vy h_vz", real=True)
@@ -72,6 +73,25 @@ def gradient_stage():
     )
 
 
+def as_written(expression):
+    """Rewrite `expression` as one would by hand: with d = s - p, the range rho = |d| and lambda."""
+    by_hand = {INVERSE_RANGE: 1 / RANGE, DOPPLER_PER_SPEED: 2 / WAVELENGTH}
+    return in_line_of_sight(expression).subs(by_hand)
+
+
+def equations(gradient=True):
+    """Return the formulas behind a block as (left side, right side), for its docstring."""
+    d, h = LINE_OF_SIGHT, sp.Symbol("h")
+    lines = [(d_i, s - p) for d_i, s, p in zip(d, SENSOR, STATE[:3], strict=True)]
+    lines += [(RANGE, sp.sqrt(sum(d_i**2 for d_i in d))), (h, as_written(doppler_shift()))]
+    if gradient:
+        for component, derivative in zip(STATE, doppler_gradient(), strict=True):
+            left = sp.Symbol(rf"\frac{{\partial h}}{{\partial {sp.latex(component)}}}")
+            lines.append((left, as_written(derivative)))
+    factor = sp.Symbol(r"\mathtt{doppler\_per\_speed}")  # how the code spells it
+    return (*lines, (factor, 2 / WAVELENGTH))
+
+
 def shift_block():
     """Return the program of the Doppler shift alone."""
     return Block(
@@ -80,6 +100,7 @@ def shift_block():
         inputs=(*STATE, *SENSOR, DOPPLER_PER_SPEED),
         stages=(line_of_sight_stage(), shift_stage()),
         outputs=(SHIFT,),
+        equations=equations(gradient=False),
     )
 
 
@@ -91,4 +112,5 @@ def gradient_block():
         inputs=(*STATE, *SENSOR, DOPPLER_PER_SPEED),
         stages=(line_of_sight_stage(), gradient_stage()),
         outputs=(SHIFT, *GRADIENT),
+        equations=equations(),
     )

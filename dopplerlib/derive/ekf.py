@@ -25,6 +25,7 @@ UPPER = [(i, j) for i in range(6) for j in range(i, 6)]
 T = sp.Symbol("T", positive=True)
 COVARIANCE = [sp.Symbol(f"p_{_AXES[i]}_{_AXES[j]}", real=True) for i, j in UPPER]
 PROCESS_NOISE = [sp.Symbol(f"q_{_AXES[i]}_{_AXES[j]}", real=True) for i, j in UPPER]
+PROJECTION = sp.symbols("u_x u_y u_z u_vx u_vy u_vz", real=True)
 CORRECTION = sp.symbols("c_x c_y c_z c_vx c_vy c_vz", real=True)
 NIS = sp.Symbol("nis", real=True)
 MEASUREMENT, SEEN, VARIANCE = sp.symbols("measurement seen variance", real=True)
@@ -59,7 +60,7 @@ def predict_block():
     return Block(
         name="predict",
         summary="Time update: x = F x, P = F P F' + Q (Table 1).",
-        inputs=(*STATE, *COVARIANCE, *PROCESS_NOISE),
+        inputs=(*STATE, *COVARIANCE, *PROCESS_NOISE, T),
         stages=(
             Stage("state", list(zip(_new(STATE), state, strict=True))),
             Stage("covariance", list(zip(_new(COVARIANCE), covariance, strict=True))),
@@ -68,22 +69,56 @@ def predict_block():
     )
 
 
+def linearize_block():
+    """Return what one sensor contributes at the predicted state: its innovation, and h.
+
+    It asks nothing of the covariance. So a processor works on all sensors at once, which the
+    update, where each sensor waits for the one before, does not let it do.
+    """
+    return Block(
+        name="linearize",
+        summary="Innovation of one sensor at the predicted state, and its gradient (Eqs 6, 7).",
+        inputs=(*STATE, MEASUREMENT, *SENSOR, DOPPLER_PER_SPEED),
+        stages=(
+            line_of_sight_stage(),
+            gradient_stage(),
+            Stage("innovation", [(INNOVATION, MEASUREMENT - SHIFT)]),
+        ),
+        outputs=(INNOVATION, *GRADIENT),
+    )
+
+
+def project_block():
+    """Return u = P h of one sensor; h of another sensor times it is an entry of H P H'."""
+    return Block(
+        name="project",
+        summary="u = P h of one linearized sensor, for the innovation covariance (Table 1).",
+        inputs=(*COVARIANCE, *GRADIENT),
+        stages=(projection_stage(),),
+        outputs=PROJECTION,
+    )
+
+
+def projection_stage():
+    """Return the assignment of u = P h."""
+    u = symmetric(COVARIANCE) @ sp.Matrix(GRADIENT)
+    return Stage("u = P h", list(zip(PROJECTION, u, strict=True)))
+
+
 def update_block():
     """Return the measurement update of Table 1 by one sensor.
 
-    The state stays the predicted one, at which Eq 6 is linearised for every sensor; what the
+    The innovation and the gradient are those at the predicted state for every sensor; what the
     sensors so far have corrected is kept apart, in `CORRECTION`. ``seen`` is 1, or 0 for a sensor
     whose measurement is missing: it multiplies the gain.
     """
     p, h, c = symmetric(COVARIANCE), sp.Matrix(GRADIENT), sp.Matrix(CORRECTION)
-    u = sp.Matrix(sp.symbols("u_x u_y u_z u_vx u_vy u_vz", real=True))
+    u = sp.Matrix(PROJECTION)
     s, e, weight = sp.symbols("s e weight", real=True)
     conditional = Stage(
-        "u = P h, the variance s = h' P h + r, the innovation e left by the sensors before",
+        "the variance s = h' P h + r, the innovation e left by the sensors before",
         [
-            *zip(u, p @ h, strict=True),
             (s, h.dot(u) + VARIANCE),
-            (INNOVATION, MEASUREMENT - SHIFT),
             (e, INNOVATION - h.dot(c)),
             (weight, SEEN / s),
         ],
@@ -95,17 +130,15 @@ def update_block():
         "gain k, correction, covariance P - k u', NIS",
         [
             *zip(gain, k, strict=True),
-            *zip(_new(CORRECTION), [c_i + k_i * e for c_i, k_i in zip(c, gain, strict=True)],
-                 strict=True),
+            *zip(_new(CORRECTION), c + sp.Matrix(gain) * e, strict=True),
             *zip(_new(COVARIANCE), [covariance[i, j] for i, j in UPPER], strict=True),
             (*_new([NIS]), NIS + e * e * weight),
         ],
     )
     return Block(
         name="update",
-        summary="Measurement update by one sensor (Table 1, Eqs 6, 7, 14).",
-        inputs=(*STATE, *COVARIANCE, *CORRECTION, NIS, MEASUREMENT, SEEN, VARIANCE, *SENSOR,
-                DOPPLER_PER_SPEED),
-        stages=(line_of_sight_stage(), gradient_stage(), conditional, correct),
-        outputs=(*_new(COVARIANCE), *_new(CORRECTION), *_new([NIS]), INNOVATION, *GRADIENT),
+        summary="Measurement update by one linearized sensor (Table 1, Eq 14).",
+        inputs=(*COVARIANCE, *CORRECTION, NIS, SEEN, INNOVATION, *GRADIENT, VARIANCE),
+        stages=(projection_stage(), conditional, correct),
+        outputs=(*_new(COVARIANCE), *_new(CORRECTION), *_new([NIS])),
     )

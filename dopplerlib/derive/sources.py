@@ -3,7 +3,7 @@
 import sympy as sp
 
 from . import ekf
-from .doppler import DOPPLER_PER_SPEED, GRADIENT, SENSOR, STATE, gradient_block, shift_block
+from .doppler import GRADIENT, STATE, gradient_block, shift_block
 from .printers import python_function, python_lanes
 
 _HEAD = '''"""{title}
@@ -31,36 +31,46 @@ def _doppler():
 
 
 def _ekf():
-    sections = {
-        "PREDICTED": STATE,
-        "COVARIANCE": ekf.COVARIANCE,
-        "CORRECTION": ekf.CORRECTION,
-        "NIS": [ekf.NIS],
-        "MEASUREMENT": [ekf.MEASUREMENT],
-        "SEEN": [ekf.SEEN],
-        "INNOVATION": [ekf.INNOVATION],
-        "GRADIENT": GRADIENT,
-        "PROCESS_NOISE": ekf.PROCESS_NOISE,
+    arrays = {
+        "work": {
+            "PREDICTED": STATE,
+            "COVARIANCE": ekf.COVARIANCE,
+            "CORRECTION": ekf.CORRECTION,
+            "NIS": [ekf.NIS],
+            "PROCESS_NOISE": ekf.PROCESS_NOISE,
+            "ROWS": [],
+        },
+        "sensor": {
+            "MEASUREMENT": [ekf.MEASUREMENT],
+            "SEEN": [ekf.SEEN],
+            "INNOVATION": [ekf.INNOVATION],
+            "GRADIENT": GRADIENT,
+            "PROJECTION": ekf.PROJECTION,
+            "SENSOR_ROWS": [],
+        },
     }
-    rows, layout, start = {}, [], 0
-    for name, symbols in sections.items():
-        layout.append(f"{name} = {start}")
-        # An updated quantity replaces the old one in place.
-        for row, symbol in enumerate(symbols, start):
-            rows[symbol] = rows[sp.Symbol(f"{symbol.name}_new", real=True)] = row
-        start += len(symbols)
-    layout.append(f"ROWS = {start}")
-    parameters = [*map(str, SENSOR), str(DOPPLER_PER_SPEED), str(ekf.VARIANCE)]
+    places, layout = {}, []
+    for array, sections in arrays.items():
+        start = 0
+        for name, symbols in sections.items():
+            layout.append(f"{name} = {start}")
+            # An updated quantity replaces the old one in place.
+            for row, symbol in enumerate(symbols, start):
+                new = sp.Symbol(f"{symbol.name}_new", real=True)
+                places[symbol] = places[new] = array, row
+            start += len(symbols)
     return "\n".join(
         [
             _head("One cycle of the EKF for constant velocity and Doppler measurements."),
             "from numpy import sqrt\n",
-            "# First row of each quantity in the work array. Of a symmetric matrix the upper\n"
-            "# triangle is kept, row by row.",
+            "# First row of each quantity in the array `work`, and in `sensor`, of which every\n"
+            "# sensor has one. Of a symmetric matrix the upper triangle is kept, row by row.",
             *layout,
             "\n",
-            python_lanes(ekf.predict_block(), rows, [str(ekf.T)]) + "\n",
-            python_lanes(ekf.update_block(), rows, parameters),
+            python_lanes(ekf.predict_block(), places) + "\n",
+            python_lanes(ekf.linearize_block(), places) + "\n",
+            python_lanes(ekf.project_block(), places) + "\n",
+            python_lanes(ekf.update_block(), places),
         ]
     )
 

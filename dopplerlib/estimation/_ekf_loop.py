@@ -25,6 +25,8 @@ _ROWS = kernel.ROWS + 21
 
 _inline = njit(forceinline=True, error_model="numpy")
 _predict = _inline(kernel.predict)
+_linearize = _inline(kernel.linearize)
+_project = _inline(kernel.project)
 _update = _inline(kernel.update)
 
 
@@ -35,6 +37,23 @@ def _copy(work, lanes, source, target, rows):
 
 
 @_inline
+def _innovation_covariance(sensor, lanes, width, variance, S):
+    """Write row n * N + m of `S`: h_n' P h_m, and the variance on the diagonal."""
+    sensors = len(sensor)
+    for n in range(sensors):
+        for m in range(n, sensors):
+            r = variance[n] if m == n else 0.0
+            upper, lower = (n * sensors + m) * lanes, (m * sensors + n) * lanes
+            for lane in range(width):
+                total = r
+                for i in range(6):
+                    h = sensor[n, (kernel.GRADIENT + i) * lanes + lane]
+                    u = sensor[m, (kernel.PROJECTION + i) * lanes + lane]
+                    total += h * u
+                S[upper + lane] = S[lower + lane] = total
+
+
+@_inline
 def _unpack(work, lanes, lane, first, matrix):
     """Write the symmetric matrix whose upper triangle starts at row `first` to `matrix`."""
     row = first
@@ -42,22 +61,6 @@ def _unpack(work, lanes, lane, first, matrix):
         for j in range(i, 6):
             matrix[i, j] = matrix[j, i] = work[row * lanes + lane]
             row += 1
-
-
-@_inline
-def _innovation_covariance(work, lanes, lane, gradient, variance, S):
-    """Write H P H' + R to `S`, with P the predicted covariance."""
-    P = np.empty((6, 6))
-    _unpack(work, lanes, lane, _PREDICTED, P)
-    for n in range(S.shape[0]):
-        for m in range(n, S.shape[0]):
-            total = variance[n] if m == n else 0.0
-            for i in range(6):
-                projected = 0.0
-                for j in range(6):
-                    projected += P[i, j] * gradient[(m * 6 + j) * lanes + lane]
-                total += gradient[(n * 6 + i) * lanes + lane] * projected
-            S[n, m] = S[m, n] = total
 
 
 @cache
@@ -73,9 +76,8 @@ def compiled(lanes):
         fingerprint  # noqa: B018  (see _FINGERPRINT)
         runs, samples, sensors = z.shape
         work = np.zeros(_ROWS * lanes)
-        gradient = np.zeros(sensors * 6 * lanes)
-        seen = np.zeros(lanes, np.int64)
-        accepted = np.zeros(lanes, np.bool_)
+        sensor = np.zeros((sensors, kernel.SENSOR_ROWS * lanes))
+        S_rows = np.zeros(sensors * sensors * lanes)
         # An array of size zero says that nobody wants this output.
         for first in range(0, runs, lanes):
             width = min(lanes, runs - first)
@@ -90,56 +92,56 @@ def compiled(lanes):
             for k in range(samples):
                 for lane in range(width):
                     _predict(work, lanes, lane, T)
-                _copy(work, lanes, kernel.COVARIANCE, _PREDICTED, 21)
-                for i in range(kernel.CORRECTION * lanes, (kernel.NIS + 1) * lanes):
-                    work[i] = 0.0
-                seen[:] = 0
                 for n in range(sensors):
                     for lane in range(width):
                         measured = z[first + lane, k, n]
                         here = not np.isnan(measured)
-                        work[kernel.MEASUREMENT * lanes + lane] = measured if here else 0.0
-                        work[kernel.SEEN * lanes + lane] = 1.0 if here else 0.0
-                        seen[lane] += here
+                        sensor[n, kernel.MEASUREMENT * lanes + lane] = measured if here else 0.0
+                        sensor[n, kernel.SEEN * lanes + lane] = 1.0 if here else 0.0
                     s_x, s_y, s_z = positions[n, 0], positions[n, 1], positions[n, 2]
-                    r = variance[k, n]
                     for lane in range(width):
-                        _update(work, lanes, lane, s_x, s_y, s_z, doppler_per_speed, r)
-                    if S.size:
-                        for i in range(6 * lanes):
-                            gradient[n * 6 * lanes + i] = work[kernel.GRADIENT * lanes + i]
-                    if innovation.size:
+                        _linearize(work, sensor[n], lanes, lane, s_x, s_y, s_z, doppler_per_speed)
+                if S.size:
+                    for n in range(sensors):
                         for lane in range(width):
-                            there = work[kernel.SEEN * lanes + lane] > 0
-                            nu = work[kernel.INNOVATION * lanes + lane]
-                            innovation[first + lane, k, n] = nu if there else np.nan
+                            _project(work, sensor[n], lanes, lane)
+                    _innovation_covariance(sensor, lanes, width, variance[k], S_rows)
+                _copy(work, lanes, kernel.COVARIANCE, _PREDICTED, 21)
+                for i in range(kernel.CORRECTION * lanes, (kernel.NIS + 1) * lanes):
+                    work[i] = 0.0
+                for n in range(sensors):
+                    for lane in range(width):
+                        _update(work, sensor[n], lanes, lane, variance[k, n])
                 for lane in range(width):
+                    run = first + lane
+                    seen = 0
+                    for n in range(sensors):
+                        seen += sensor[n, kernel.SEEN * lanes + lane] > 0
                     value = work[kernel.NIS * lanes + lane]
-                    count = seen[lane]
                     # Not a number fails both comparisons: a broken filter is never "updated".
-                    accepted[lane] = count > 0 and lower[count] <= value <= upper[count]
-                    nis[first + lane, k] = value if count > 0 else np.nan
-                    updated[first + lane, k] = accepted[lane]
-                for i in range(6):
-                    for lane in range(width):
-                        if accepted[lane]:
-                            work[(kernel.PREDICTED + i) * lanes + lane] += work[
-                                (kernel.CORRECTION + i) * lanes + lane
-                            ]
-                        x[first + lane, k, i] = work[(kernel.PREDICTED + i) * lanes + lane]
-                for lane in range(width):
+                    accepted = seen > 0 and lower[seen] <= value <= upper[seen]
+                    if accepted:
+                        for i in range(6):
+                            correction = work[(kernel.CORRECTION + i) * lanes + lane]
+                            work[(kernel.PREDICTED + i) * lanes + lane] += correction
+                    else:
+                        for i in range(21):
+                            predicted = work[(_PREDICTED + i) * lanes + lane]
+                            work[(kernel.COVARIANCE + i) * lanes + lane] = predicted
+                    for i in range(6):
+                        x[run, k, i] = work[(kernel.PREDICTED + i) * lanes + lane]
+                    nis[run, k] = value if seen > 0 else np.nan
+                    updated[run, k] = accepted
+                    if P.size:
+                        _unpack(work, lanes, lane, kernel.COVARIANCE, P[run, k])
+                    if innovation.size:
+                        for n in range(sensors):
+                            here = sensor[n, kernel.SEEN * lanes + lane] > 0
+                            nu = sensor[n, kernel.INNOVATION * lanes + lane]
+                            innovation[run, k, n] = nu if here else np.nan
                     if S.size:
-                        _innovation_covariance(
-                            work, lanes, lane, gradient, variance[k], S[first + lane, k]
-                        )
-                for i in range(21):
-                    for lane in range(width):
-                        if not accepted[lane]:
-                            work[(kernel.COVARIANCE + i) * lanes + lane] = work[
-                                (_PREDICTED + i) * lanes + lane
-                            ]
-                if P.size:
-                    for lane in range(width):
-                        _unpack(work, lanes, lane, kernel.COVARIANCE, P[first + lane, k])
+                        for n in range(sensors):
+                            for m in range(sensors):
+                                S[run, k, n, m] = S_rows[(n * sensors + m) * lanes + lane]
 
     return filter_records

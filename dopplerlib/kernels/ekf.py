@@ -6,18 +6,20 @@ Printed by ``python -m dopplerlib.derive`` with SymPy 1.14.0. Do not edit: chang
 
 from numpy import sqrt
 
-# First row of each quantity in the work array. Of a symmetric matrix the upper
-# triangle is kept, row by row.
+# First row of each quantity in the array `work`, and in `sensor`, of which every
+# sensor has one. Of a symmetric matrix the upper triangle is kept, row by row.
 PREDICTED = 0
 COVARIANCE = 6
 CORRECTION = 27
 NIS = 33
-MEASUREMENT = 34
-SEEN = 35
-INNOVATION = 36
-GRADIENT = 37
-PROCESS_NOISE = 43
-ROWS = 64
+PROCESS_NOISE = 34
+ROWS = 55
+MEASUREMENT = 0
+SEEN = 1
+INNOVATION = 2
+GRADIENT = 3
+PROJECTION = 9
+SENSOR_ROWS = 15
 
 
 def predict(work, lanes, lane, T):
@@ -49,27 +51,27 @@ def predict(work, lanes, lane, T):
     p_vy_vy = work[24 * lanes + lane]
     p_vy_vz = work[25 * lanes + lane]
     p_vz_vz = work[26 * lanes + lane]
-    q_x_x = work[43 * lanes + lane]
-    q_x_y = work[44 * lanes + lane]
-    q_x_z = work[45 * lanes + lane]
-    q_x_vx = work[46 * lanes + lane]
-    q_x_vy = work[47 * lanes + lane]
-    q_x_vz = work[48 * lanes + lane]
-    q_y_y = work[49 * lanes + lane]
-    q_y_z = work[50 * lanes + lane]
-    q_y_vx = work[51 * lanes + lane]
-    q_y_vy = work[52 * lanes + lane]
-    q_y_vz = work[53 * lanes + lane]
-    q_z_z = work[54 * lanes + lane]
-    q_z_vx = work[55 * lanes + lane]
-    q_z_vy = work[56 * lanes + lane]
-    q_z_vz = work[57 * lanes + lane]
-    q_vx_vx = work[58 * lanes + lane]
-    q_vx_vy = work[59 * lanes + lane]
-    q_vx_vz = work[60 * lanes + lane]
-    q_vy_vy = work[61 * lanes + lane]
-    q_vy_vz = work[62 * lanes + lane]
-    q_vz_vz = work[63 * lanes + lane]
+    q_x_x = work[34 * lanes + lane]
+    q_x_y = work[35 * lanes + lane]
+    q_x_z = work[36 * lanes + lane]
+    q_x_vx = work[37 * lanes + lane]
+    q_x_vy = work[38 * lanes + lane]
+    q_x_vz = work[39 * lanes + lane]
+    q_y_y = work[40 * lanes + lane]
+    q_y_z = work[41 * lanes + lane]
+    q_y_vx = work[42 * lanes + lane]
+    q_y_vy = work[43 * lanes + lane]
+    q_y_vz = work[44 * lanes + lane]
+    q_z_z = work[45 * lanes + lane]
+    q_z_vx = work[46 * lanes + lane]
+    q_z_vy = work[47 * lanes + lane]
+    q_z_vz = work[48 * lanes + lane]
+    q_vx_vx = work[49 * lanes + lane]
+    q_vx_vy = work[50 * lanes + lane]
+    q_vx_vz = work[51 * lanes + lane]
+    q_vy_vy = work[52 * lanes + lane]
+    q_vy_vz = work[53 * lanes + lane]
+    q_vz_vz = work[54 * lanes + lane]
     # state
     x_new = T*v_x + x
     y_new = T*v_y + y
@@ -137,14 +139,88 @@ def predict(work, lanes, lane, T):
     work[26 * lanes + lane] = p_vz_vz_new
 
 
-def update(work, lanes, lane, s_x, s_y, s_z, doppler_per_speed, variance):
-    """Measurement update by one sensor (Table 1, Eqs 6, 7, 14)."""
+def linearize(work, sensor, lanes, lane, s_x, s_y, s_z, doppler_per_speed):
+    """Innovation of one sensor at the predicted state, and its gradient (Eqs 6, 7)."""
     x = work[0 * lanes + lane]
     y = work[1 * lanes + lane]
     z = work[2 * lanes + lane]
     v_x = work[3 * lanes + lane]
     v_y = work[4 * lanes + lane]
     v_z = work[5 * lanes + lane]
+    measurement = sensor[0 * lanes + lane]
+    # line of sight and inverse range
+    d_x = s_x - x
+    d_y = s_y - y
+    d_z = s_z - z
+    inverse_range = 1/sqrt(d_x*d_x + d_y*d_y + d_z*d_z)
+    # Doppler shift, Eq 6, and its gradient, Eq 7
+    t0 = d_x*v_x + d_y*v_y + d_z*v_z
+    t1 = doppler_per_speed*inverse_range
+    shift = t0*t1
+    t2 = (inverse_range*inverse_range)*t0
+    h_x = t1*(d_x*t2 - v_x)
+    h_y = t1*(d_y*t2 - v_y)
+    h_z = t1*(d_z*t2 - v_z)
+    h_vx = d_x*t1
+    h_vy = d_y*t1
+    h_vz = d_z*t1
+    # innovation
+    innovation = measurement - shift
+    sensor[2 * lanes + lane] = innovation
+    sensor[3 * lanes + lane] = h_x
+    sensor[4 * lanes + lane] = h_y
+    sensor[5 * lanes + lane] = h_z
+    sensor[6 * lanes + lane] = h_vx
+    sensor[7 * lanes + lane] = h_vy
+    sensor[8 * lanes + lane] = h_vz
+
+
+def project(work, sensor, lanes, lane):
+    """u = P h of one linearized sensor, for the innovation covariance (Table 1)."""
+    p_x_x = work[6 * lanes + lane]
+    p_x_y = work[7 * lanes + lane]
+    p_x_z = work[8 * lanes + lane]
+    p_x_vx = work[9 * lanes + lane]
+    p_x_vy = work[10 * lanes + lane]
+    p_x_vz = work[11 * lanes + lane]
+    p_y_y = work[12 * lanes + lane]
+    p_y_z = work[13 * lanes + lane]
+    p_y_vx = work[14 * lanes + lane]
+    p_y_vy = work[15 * lanes + lane]
+    p_y_vz = work[16 * lanes + lane]
+    p_z_z = work[17 * lanes + lane]
+    p_z_vx = work[18 * lanes + lane]
+    p_z_vy = work[19 * lanes + lane]
+    p_z_vz = work[20 * lanes + lane]
+    p_vx_vx = work[21 * lanes + lane]
+    p_vx_vy = work[22 * lanes + lane]
+    p_vx_vz = work[23 * lanes + lane]
+    p_vy_vy = work[24 * lanes + lane]
+    p_vy_vz = work[25 * lanes + lane]
+    p_vz_vz = work[26 * lanes + lane]
+    h_x = sensor[3 * lanes + lane]
+    h_y = sensor[4 * lanes + lane]
+    h_z = sensor[5 * lanes + lane]
+    h_vx = sensor[6 * lanes + lane]
+    h_vy = sensor[7 * lanes + lane]
+    h_vz = sensor[8 * lanes + lane]
+    # u = P h
+    u_x = h_vx*p_x_vx + h_vy*p_x_vy + h_vz*p_x_vz + h_x*p_x_x + h_y*p_x_y + h_z*p_x_z
+    u_y = h_vx*p_y_vx + h_vy*p_y_vy + h_vz*p_y_vz + h_x*p_x_y + h_y*p_y_y + h_z*p_y_z
+    u_z = h_vx*p_z_vx + h_vy*p_z_vy + h_vz*p_z_vz + h_x*p_x_z + h_y*p_y_z + h_z*p_z_z
+    u_vx = h_vx*p_vx_vx + h_vy*p_vx_vy + h_vz*p_vx_vz + h_x*p_x_vx + h_y*p_y_vx + h_z*p_z_vx
+    u_vy = h_vx*p_vx_vy + h_vy*p_vy_vy + h_vz*p_vy_vz + h_x*p_x_vy + h_y*p_y_vy + h_z*p_z_vy
+    u_vz = h_vx*p_vx_vz + h_vy*p_vy_vz + h_vz*p_vz_vz + h_x*p_x_vz + h_y*p_y_vz + h_z*p_z_vz
+    sensor[9 * lanes + lane] = u_x
+    sensor[10 * lanes + lane] = u_y
+    sensor[11 * lanes + lane] = u_z
+    sensor[12 * lanes + lane] = u_vx
+    sensor[13 * lanes + lane] = u_vy
+    sensor[14 * lanes + lane] = u_vz
+
+
+def update(work, sensor, lanes, lane, variance):
+    """Measurement update by one linearized sensor (Table 1, Eq 14)."""
     p_x_x = work[6 * lanes + lane]
     p_x_y = work[7 * lanes + lane]
     p_x_z = work[8 * lanes + lane]
@@ -173,33 +249,23 @@ def update(work, lanes, lane, s_x, s_y, s_z, doppler_per_speed, variance):
     c_vy = work[31 * lanes + lane]
     c_vz = work[32 * lanes + lane]
     nis = work[33 * lanes + lane]
-    measurement = work[34 * lanes + lane]
-    seen = work[35 * lanes + lane]
-    # line of sight and inverse range
-    d_x = s_x - x
-    d_y = s_y - y
-    d_z = s_z - z
-    inverse_range = 1/sqrt((d_x*d_x) + (d_y*d_y) + (d_z*d_z))
-    # Doppler shift, Eq 6, and its gradient, Eq 7
-    t0 = d_x*v_x + d_y*v_y + d_z*v_z
-    t1 = doppler_per_speed*inverse_range
-    shift = t0*t1
-    t2 = (inverse_range*inverse_range)*t0
-    h_x = t1*(d_x*t2 - v_x)
-    h_y = t1*(d_y*t2 - v_y)
-    h_z = t1*(d_z*t2 - v_z)
-    h_vx = d_x*t1
-    h_vy = d_y*t1
-    h_vz = d_z*t1
-    # u = P h, the variance s = h' P h + r, the innovation e left by the sensors before
+    seen = sensor[1 * lanes + lane]
+    innovation = sensor[2 * lanes + lane]
+    h_x = sensor[3 * lanes + lane]
+    h_y = sensor[4 * lanes + lane]
+    h_z = sensor[5 * lanes + lane]
+    h_vx = sensor[6 * lanes + lane]
+    h_vy = sensor[7 * lanes + lane]
+    h_vz = sensor[8 * lanes + lane]
+    # u = P h
     u_x = h_vx*p_x_vx + h_vy*p_x_vy + h_vz*p_x_vz + h_x*p_x_x + h_y*p_x_y + h_z*p_x_z
     u_y = h_vx*p_y_vx + h_vy*p_y_vy + h_vz*p_y_vz + h_x*p_x_y + h_y*p_y_y + h_z*p_y_z
     u_z = h_vx*p_z_vx + h_vy*p_z_vy + h_vz*p_z_vz + h_x*p_x_z + h_y*p_y_z + h_z*p_z_z
     u_vx = h_vx*p_vx_vx + h_vy*p_vx_vy + h_vz*p_vx_vz + h_x*p_x_vx + h_y*p_y_vx + h_z*p_z_vx
     u_vy = h_vx*p_vx_vy + h_vy*p_vy_vy + h_vz*p_vy_vz + h_x*p_x_vy + h_y*p_y_vy + h_z*p_z_vy
     u_vz = h_vx*p_vx_vz + h_vy*p_vy_vz + h_vz*p_vz_vz + h_x*p_x_vz + h_y*p_y_vz + h_z*p_z_vz
+    # the variance s = h' P h + r, the innovation e left by the sensors before
     s = h_vx*u_vx + h_vy*u_vy + h_vz*u_vz + h_x*u_x + h_y*u_y + h_z*u_z + variance
-    innovation = measurement - shift
     e = -c_vx*h_vx - c_vy*h_vy - c_vz*h_vz - c_x*h_x - c_y*h_y - c_z*h_z + innovation
     weight = seen/s
     # gain k, correction, covariance P - k u', NIS
@@ -265,10 +331,3 @@ def update(work, lanes, lane, s_x, s_y, s_z, doppler_per_speed, variance):
     work[31 * lanes + lane] = c_vy_new
     work[32 * lanes + lane] = c_vz_new
     work[33 * lanes + lane] = nis_new
-    work[36 * lanes + lane] = innovation
-    work[37 * lanes + lane] = h_x
-    work[38 * lanes + lane] = h_y
-    work[39 * lanes + lane] = h_z
-    work[40 * lanes + lane] = h_vx
-    work[41 * lanes + lane] = h_vy
-    work[42 * lanes + lane] = h_vz
