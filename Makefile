@@ -15,14 +15,17 @@ export OPENBLAS_NUM_THREADS := 1
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport MPLBACKEND
 
-# $(call make-venv,folder,lock): an environment with what the lock holds. Byte code is left to the
-# first import: compiling all of it up front doubles the time and most of it is never read.
+# $(call make-venv,folder,lock): an environment with what the lock holds, and the library itself.
+# Byte code is left to the first import: compiling all of it up front doubles the time, and most of
+# it is never read.
 define make-venv
-$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	{ echo "error: Python 3.11 or newer is needed, but $(PYTHON) is $$($(PYTHON) -V 2>&1);" \
 	"choose another one with: make PYTHON=python3.12" >&2; exit 1; }
 $(PYTHON) -m venv --clear $(1)
-$(1)/bin/python -m pip install -q --no-compile --no-deps --require-hashes $(3) -r $(2)
+$(1)/bin/python -m pip install -q --no-compile --no-deps --require-hashes --only-binary :all: -r $(2)
+$(1)/bin/python -m pip install -q --no-deps --no-build-isolation --no-index -e .
+@touch $(1)/.ready
 endef
 
 .PHONY: help
@@ -79,14 +82,10 @@ LOCK_OPTIONS := --quiet --upgrade --universal --fork-strategy fewest --python-ve
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
 
 $(VENV)/.ready: environment.lock pyproject.toml
-	$(call make-venv,$(VENV),environment.lock,--only-binary :all:)
-	$(PY) -m pip install -q --no-deps --no-build-isolation --no-index -e .
-	@touch $@
+	$(call make-venv,$(VENV),environment.lock)
 
 $(BENCH)/.ready: benchmarks/requirements.lock pyproject.toml
-	$(call make-venv,$(BENCH),benchmarks/requirements.lock,)
-	$(BENCH)/bin/python -m pip install -q --no-deps --no-build-isolation --no-index -e .
-	@touch $@
+	$(call make-venv,$(BENCH),benchmarks/requirements.lock)
 
 .venv-uv/bin/uv:
 	$(PYTHON) -m venv --clear .venv-uv

@@ -26,7 +26,7 @@ _HOME = {
     "innovation_whiteness": "evaluation.whiteness",
 }
 
-__all__ = sorted(_HOME)  # noqa: PLE0605
+__all__ = sorted(_HOME)
 __version__ = "0.1.0"
 
 

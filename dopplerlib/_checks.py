@@ -31,6 +31,17 @@ def check_shape(name, array, shape):
         raise ValueError(f"{name} must have shape (..., {wanted}), got {array.shape}")
 
 
+def check_broadcast(name, shape, other_name, other_shape):
+    """Raise unless the leading axes of two arguments broadcast against each other."""
+    try:
+        np.broadcast_shapes(shape, other_shape)
+    except ValueError:
+        raise ValueError(
+            f"{name} must have leading axes that broadcast against {other_shape} of {other_name}, "
+            f"got {shape}"
+        ) from None
+
+
 def positive(name, value, shape=None):
     """Return `value` as a float array, or raise if it is not finite and positive."""
     array = finite(name, value, shape)
@@ -39,12 +50,17 @@ def positive(name, value, shape=None):
     return array
 
 
-def positive_number(name, value):
-    """Return `value` as a float, or raise if it is not one finite positive number."""
-    array = positive(name, value)
+def one_number(name, value, check=finite):
+    """Return `value` as a float, or raise if it is not one number that passes `check`."""
+    array = check(name, value)
     if array.ndim:
         raise ValueError(f"{name} must be one number, got an array of shape {array.shape}")
     return float(array)
+
+
+def positive_number(name, value):
+    """Return `value` as a float, or raise if it is not one finite positive number."""
+    return one_number(name, value, positive)
 
 
 def whole_number(name, value, least=1):
@@ -77,8 +93,9 @@ def covariance(name, value, n):
     array = finite(name, value, (n, n))
     asymmetry = np.abs(array - array.swapaxes(-1, -2)).max(initial=0.0)
     if asymmetry > 1e-12 * np.abs(array).max(initial=0.0):
-        raise ValueError(f"{name} must be symmetric, got a difference of {asymmetry:.3g} across "
-                         "the diagonal")
+        raise ValueError(
+            f"{name} must be symmetric, got a difference of {asymmetry:.3g} across the diagonal"
+        )
     try:
         np.linalg.cholesky(array)
     except np.linalg.LinAlgError:
@@ -92,6 +109,8 @@ def covariance(name, value, n):
 def generator(name, value):
     """Return `value`, or raise if it is not a `numpy.random.Generator`."""
     if not isinstance(value, np.random.Generator):
-        raise ValueError(f"{name} must be a numpy.random.Generator, for example "
-                         f"numpy.random.default_rng(1), got {value!r}")
+        raise ValueError(
+            f"{name} must be a numpy.random.Generator, for example "
+            f"numpy.random.default_rng(1), got {value!r}"
+        )
     return value

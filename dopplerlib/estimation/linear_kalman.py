@@ -1,4 +1,4 @@
-"""The linear Kalman filter, for models that are linear and as a yardstick for those that are not."""
+"""The linear Kalman filter: for linear models, and as a yardstick for others."""
 
 import numpy as np
 
@@ -127,9 +127,7 @@ def kf(z, F, Q, H, R, x0, P0):
         x, P = kf_predict(x, P, F, Q)
         x, P, innovation, S = kf_update(x, P, z[..., k, :], H, R)
         steps.append((x, P, innovation, S))
-    x, P, innovation, S = (
-        np.stack(values, axis=len(batch)) for values in zip(*steps, strict=True)
-    )
+    x, P, innovation, S = (np.stack(values, axis=len(batch)) for values in zip(*steps, strict=True))
     weighted = np.linalg.solve(S, innovation[..., None])[..., 0]
     nis = np.sum(innovation * weighted, axis=-1)
     return Track(x, P, innovation, S, nis, np.ones(nis.shape, bool))

@@ -1,1 +1,1 @@
-"""Is it right? Consistency statistics."""
+"""Is it right: consistency statistics."""

@@ -1,4 +1,4 @@
-"""Consistency of a filter: do its errors have the size that it claims?"""
+"""Consistency of a filter: whether its errors have the size that it claims."""
 
 import numpy as np
 
@@ -23,7 +23,8 @@ def nees(track, truth):
     Raises
     ------
     ValueError
-        If the shapes do not fit, or the track was made without `P`.
+        If the shapes do not fit, `truth` is not finite, the track was made without `P`, or a `P`
+        is singular or gives a negative value, which no covariance does.
 
     Notes
     -----
@@ -32,7 +33,15 @@ def nees(track, truth):
     if track.P is None:
         raise ValueError('track must hold P, got None: ask ekf for it with keep=("P",)')
     truth = _checks.finite("truth", truth, track.x.shape[-2:])
-    return _quadratic_form(truth - track.x, track.P)
+    _checks.check_broadcast("truth", truth.shape[:-2], "track.x", track.x.shape[:-2])
+    # Definiteness is not checked beforehand: it would take longer than all the rest.
+    try:
+        values = _quadratic_form(truth - track.x, track.P)
+    except np.linalg.LinAlgError:
+        raise ValueError("track.P must be positive definite, got a singular matrix") from None
+    if (values < 0).any():
+        raise ValueError(f"track.P must be positive definite, got a NEES of {values.min():.3g}")
+    return values
 
 
 def nis(innovation, S):
@@ -53,7 +62,8 @@ def nis(innovation, S):
     Raises
     ------
     ValueError
-        If the shapes do not fit or a value is not finite.
+        If the shapes do not fit, a value is not finite, or `S` is not a covariance (symmetric and
+        positive definite).
 
     Notes
     -----
@@ -66,7 +76,9 @@ def nis(innovation, S):
     """
     innovation = _checks.finite("innovation", innovation, (None,))
     m = innovation.shape[-1]
-    return _quadratic_form(innovation, _checks.finite("S", S, (m, m)))
+    S = _checks.covariance("S", S, m)
+    _checks.check_broadcast("innovation", innovation.shape[:-1], "S", S.shape[:-2])
+    return _quadratic_form(innovation, S)
 
 
 def chi2_interval(dof, runs=1, confidence=0.95):
@@ -106,8 +118,7 @@ def chi2_interval(dof, runs=1, confidence=0.95):
     dof = _checks.whole_number("dof", dof)
     runs = _checks.whole_number("runs", runs)
     tail = (1 - _checks.probability("confidence", confidence)) / 2
-    lower, upper = chi2.ppf([tail, 1 - tail], dof * runs) / runs
-    return float(lower), float(upper)
+    return float(chi2.ppf(tail, dof * runs) / runs), float(chi2.isf(tail, dof * runs) / runs)
 
 
 def _quadratic_form(error, covariance):

@@ -49,7 +49,8 @@ def innovation_mean(innovation, S):
     Raises
     ------
     ValueError
-        If the shapes do not fit or a value is not finite.
+        If the shapes do not fit, a value is not finite, or `S` is not a covariance (symmetric and
+        positive definite).
 
     Notes
     -----
@@ -80,7 +81,8 @@ def innovation_whiteness(innovation, S, lags=20):
     Raises
     ------
     ValueError
-        If the shapes do not fit, a value is not finite, or there are too few samples.
+        If the shapes do not fit, a value is not finite, `S` is not a covariance, there are too few
+        samples, or an innovation never changes.
 
     Notes
     -----
@@ -94,6 +96,8 @@ def innovation_whiteness(innovation, S, lags=20):
     if lags >= samples:
         raise ValueError(f"lags must be less than the number of samples {samples}, got {lags}")
     white = np.linalg.solve(np.linalg.cholesky(S), innovation[..., None])[..., 0]
+    if (np.ptp(white, axis=-2) == 0).any():
+        raise ValueError("innovation must vary in time, got a component that is constant")
     white = white - white.mean(axis=-2, keepdims=True)
     power = np.sum(white**2, axis=-2)
     autocorrelation = np.stack(
@@ -112,4 +116,7 @@ def innovation_whiteness(innovation, S, lags=20):
 def _record(innovation, S):
     innovation = _checks.finite("innovation", innovation, (None, None))
     samples, m = innovation.shape[-2:]
-    return innovation, _checks.finite("S", S, (samples, m, m))
+    S = _checks.covariance("S", S, m)
+    _checks.check_shape("S", S, (samples, m, m))
+    _checks.check_broadcast("innovation", innovation.shape[:-2], "S", S.shape[:-3])
+    return innovation, S

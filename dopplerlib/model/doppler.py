@@ -78,7 +78,8 @@ def doppler_jacobian(x, array):
 def check_clear_of_sensors(name, x, array):
     """Raise if a position in `x`, shape (..., 6), is that of a sensor."""
     for n, sensor in enumerate(array.positions):
-        if (x[..., :3] == sensor).all(axis=-1).any():
+        # Not a comparison for equality: the square of less than 1e-162 m is zero as well.
+        if (np.square(x[..., :3] - sensor).sum(axis=-1) == 0).any():
             raise ValueError(
                 f"{name} must not lie on a sensor, got a position equal to that of sensor {n}, "
                 f"{sensor.tolist()}"

@@ -92,7 +92,8 @@ class RadarArray:
         Raises
         ------
         ValueError
-            If a setting is not finite, not positive, or `normal` is not an axis.
+            If a setting is not finite, a number other than `phase` is not positive, or `normal` is
+            not an axis.
 
         Examples
         --------
@@ -101,7 +102,7 @@ class RadarArray:
         """
         n = _checks.whole_number("n", n)
         radius = _checks.positive_number("radius", radius)
-        angle = float(_checks.finite("phase", phase)) + 2 * np.pi * np.arange(n) / n
+        angle = _checks.one_number("phase", phase) + 2 * np.pi * np.arange(n) / n
         axis = _AXES[_checks.one_of("normal", normal, tuple(_AXES))]
         positions = np.zeros((n, 3))
         positions[:, (axis + 1) % 3] = radius * np.cos(angle)

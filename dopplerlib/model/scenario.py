@@ -2,6 +2,7 @@
 
 import tomllib
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,13 @@ import numpy as np
 from .. import _checks
 from .doppler import check_clear_of_sensors
 from .radar_array import RadarArray
+
+_SHAPES = {"ring": RadarArray.ring, "linear": RadarArray.linear, "positions": RadarArray}
+_ENTRIES = {
+    "target": ("x0",),
+    "sampling": ("T", "samples", "sigma_f"),
+    "tracker": ("sigma_p", "P0_diagonal"),
+}
 
 
 @dataclass(frozen=True)
@@ -50,10 +58,11 @@ class Scenario:
     def __post_init__(self):
         """Check and freeze the fields."""
         x0 = _checks.finite("x0", self.x0, (6,)).copy()
-        if x0.ndim != 1:
-            raise ValueError(f"x0 must have shape (6,), got {x0.shape}")
-        check_clear_of_sensors("x0", x0, self.array)
         P0 = _checks.covariance("P0", self.P0, 6).copy()
+        for name, array, shape in [("x0", x0, (6,)), ("P0", P0, (6, 6))]:
+            if array.shape != shape:
+                raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
+        check_clear_of_sensors("x0", x0, self.array)
         x0.flags.writeable = P0.flags.writeable = False
         object.__setattr__(self, "x0", x0)
         object.__setattr__(self, "P0", P0)
@@ -83,26 +92,58 @@ class Scenario:
             File with the tables ``array``, ``target``, ``sampling`` and ``tracker``, as in
             ``data/mittermaier2016/scenario.toml``.
 
+        Returns
+        -------
+        Scenario
+
         Raises
         ------
         ValueError
-            If a table or entry is missing or unknown, or has a value that `Scenario` refuses.
+            If the file is not TOML, a table or entry is missing or unknown, or an entry has a value
+            that `Scenario` or `RadarArray` refuses. The message names the file and the entry.
         """
-        tables = tomllib.loads(Path(path).read_text(encoding="utf-8"))
         try:
-            geometry = dict(tables["array"])
-            make = {"ring": RadarArray.ring, "linear": RadarArray.linear, "positions": RadarArray}[
-                geometry.pop("shape")
-            ]
-            tracker = tables["tracker"]
-            return cls(
-                array=make(**geometry),
-                x0=tables["target"]["x0"],
-                T=tables["sampling"]["T"],
-                samples=tables["sampling"]["samples"],
-                sigma_f=tables["sampling"]["sigma_f"],
-                sigma_p=tracker["sigma_p"],
-                P0=np.diag(tracker["P0_diagonal"]),
-            )
-        except (KeyError, TypeError) as error:
-            raise ValueError(f"{path} must describe a scenario: {error!r}") from error
+            return cls(**_fields(tomllib.loads(Path(path).read_text(encoding="utf-8"))))
+        except ValueError as error:  # those of TOML and of UTF-8 are ValueErrors as well
+            raise ValueError(f"{path}: {error}") from error
+
+
+def _fields(tables):
+    """Return the fields of a scenario that the tables of a file describe."""
+    _check_names("the file", tables, ("array", "target", "sampling", "tracker"))
+    for name, entries in _ENTRIES.items():
+        _check_names(f"[{name}]", tables[name], entries)
+    sampling, tracker = tables["sampling"], tables["tracker"]
+    return {
+        "array": _array(tables["array"]),
+        "x0": tables["target"]["x0"],
+        **sampling,
+        "sigma_p": tracker["sigma_p"],
+        "P0": np.diag(_checks.positive("P0_diagonal", tracker["P0_diagonal"], (6,))),
+    }
+
+
+def _array(table):
+    _check_names("[array]", table, ("shape",), others=None)
+    make = _SHAPES[_checks.one_of("shape in [array]", table["shape"], tuple(_SHAPES))]
+    settings = {name: value for name, value in table.items() if name != "shape"}
+    parameters = signature(make).parameters.values()
+    needed = [p.name for p in parameters if p.default is p.empty]
+    _check_names("[array]", settings, needed, others=[p.name for p in parameters])
+    return make(**settings)
+
+
+def _check_names(where, table, needed, others=()):
+    """Raise unless `table` has all `needed` names, and beside them only `others` (None: any)."""
+    if not isinstance(table, dict):
+        raise ValueError(f"{where} must be a table, got {table!r}")
+    if missing := [name for name in needed if name not in table]:
+        got = ", ".join(table) or "nothing"
+        raise ValueError(f"{where} must have {', '.join(missing)}, got only {got}")
+    if others is None:
+        return
+    known = dict.fromkeys([*needed, *others])
+    if unknown := [name for name in table if name not in known]:
+        raise ValueError(
+            f"{where} must have nothing but {', '.join(known)}, got {', '.join(unknown)}"
+        )

@@ -51,9 +51,14 @@ class PublishedFigure6:
     skipped : ndarray of bool, shape (1001,)
         Samples at which the state was only predicted. The paper does not say so: inferred from
         the curves, and unknown (False) at the first sample.
-    path_time : ndarray, shape (51,)
-        Times of the estimated positions drawn in the scene.
-    path : ndarray, shape (51, 3)
+    start : ndarray, shape (6,)
+        Initial estimate that the drawn marker implies: its x in m, the rest as in Table 2.
+    first_error : ndarray, shape (3,)
+        Absolute position errors of the first sample in m; that of x from the 3-D view.
+    path_time : ndarray, shape (50,)
+        Times of the estimated positions drawn in the scene, from sample 21 on. The figure has one
+        more at the first sample, for which the error curves cannot decide on the position.
+    path : ndarray, shape (50, 3)
         These positions in m, inverted from the 3-D view with the help of the error curves.
     """
 
@@ -61,6 +66,8 @@ class PublishedFigure6:
     error: np.ndarray
     nis: np.ndarray
     skipped: np.ndarray
+    start: np.ndarray
+    first_error: np.ndarray
     path_time: np.ndarray
     path: np.ndarray
 
@@ -124,12 +131,17 @@ def published_figure6():
     T = scenario().T
     errors = np.genfromtxt(DATA / "fig6_errors.csv", delimiter=",", names=True)
     nis = np.genfromtxt(DATA / "fig6_nis.csv", delimiter=",", names=True)
-    markers = _json("fig6_geometry.json")["estimated_path_markers"]["markers"]
+    geometry = _json("fig6_geometry.json")
+    initial, markers = geometry["initial"], geometry["estimated_path_markers"]["markers"]
+    start = table2().x_ml.copy()
+    start[0] = initial["x_hat_implied_by_mle_marker_m"]["from_u"]
     return PublishedFigure6(
         time=(nis["sample"] - 1) * T,
         error=np.stack([errors[f"e{axis}_cm"] for axis in "xyz"], axis=-1) / 100,
         nis=nis["nis"],
         skipped=nis["update_skipped"] == 1,
+        start=start,
+        first_error=np.array([initial["sample1_abs_error_cm"][axis] / 100 for axis in "xyz"]),
         path_time=np.array([(marker["sample"] - 1) * T for marker in markers]),
         path=np.array([marker["est_position_m"] for marker in markers]),
     )

@@ -15,6 +15,7 @@ CHAPTERS = chapters(BOOK)
 PAGES = CHAPTERS + sorted(p for p in BOOK.rglob("*.md") if "_build" not in p.parts)
 LONGEST_CELL = 15  # lines: what does not fit belongs in the library
 LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
+PICTURE = re.compile(r"^(`{3,}|:{3,})\{(?:glue:)?(?:figure|image)\}(.*?)^\1", re.M | re.S)
 
 
 def name(path):
@@ -79,8 +80,6 @@ def test_every_figure_has_a_name_a_caption_and_a_text_for_those_who_do_not_see_i
             for out in cell.outputs
             if out.output_type in {"display_data", "execute_result"}
             and any(mime.startswith("image/") for mime in out.data)
-            # a glued figure gets its caption and its text where it is shown
-            and not any(mime.startswith("application/papermill.record") for mime in out.data)
         ]
         if pictures:
             render = cell.metadata.get("mystnb", {})
@@ -88,6 +87,19 @@ def test_every_figure_has_a_name_a_caption_and_a_text_for_those_who_do_not_see_i
             assert render.get("image", {}).get("alt", "").strip(), f"{label} has no image.alt"
             for key in ("caption", "name"):
                 assert render.get("figure", {}).get(key, "").strip(), f"{label}: no figure.{key}"
+
+
+@pytest.mark.parametrize("path", PAGES, ids=name)
+def test_every_picture_in_the_prose_has_a_text_too(path):
+    text = prose(path)
+    assert "![](" not in text
+    assert [m[0] for m in PICTURE.finditer(text) if ":alt:" not in m[2]] == []
+
+
+@pytest.mark.parametrize("path", CHAPTERS, ids=name)
+def test_no_cell_hides_its_value_with_a_semicolon(path):
+    """The kernel that compares the outputs shows what the one of `make notebooks` hid."""
+    assert [label for label, c in code_cells(path) if c.source.rstrip().endswith(";")] == []
 
 
 @pytest.mark.parametrize("path", [*PAGES, ROOT / "README.md"], ids=lambda p: p.name)

@@ -1,0 +1,77 @@
+"""The figures of the tour: what is measured, and what comes of it."""
+
+import numpy as np
+
+from .style import CYCLE, OURS, TRUTH, styled
+
+
+def record(time, z, shift):
+    """Draw one record of Doppler measurements and the true shifts behind it.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    z : ndarray, shape (K, N)
+        Measurements in Hz.
+    shift : ndarray, shape (K, N)
+        True Doppler shifts in Hz.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.8) as figure:
+        ax, zoom = figure.subplots(1, 2, width_ratios=(3, 2))
+        for n in range(shift.shape[1]):
+            color = CYCLE[n % len(CYCLE)]
+            ax.plot(time, shift[:, n], color=color)
+            ax.annotate(
+                f"{n + 1}", (time[-1], shift[-1, n]), xytext=(4, -4), textcoords="offset points",
+                color=color,
+            )  # fmt: skip
+            zoom.plot(1e3 * time[:50], z[:50, n], ".", color=color, ms=4)
+            zoom.plot(1e3 * time[:50], shift[:50, n], color=color)
+        ax.set(
+            xlabel="time in s", ylabel="Doppler shift in Hz", title="whole record, without noise"
+        )
+        zoom.set(xlabel="time in ms", title="first 50 samples, measured")
+        return figure
+
+
+def approach(time, truth, x, run=0):
+    """Draw the estimated distance of one run, and the predicted time of impact of all runs.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    truth : ndarray, shape (K, 6)
+        True states.
+    x : ndarray, shape (runs, K, 6)
+        Estimated states.
+    run : int
+        Which run to draw.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    impact = time - x[..., 0] / x[..., 3]
+    true_impact = time[0] - truth[0, 0] / truth[0, 3]
+    band = np.percentile(impact, [2.5, 50, 97.5], axis=0)
+    with styled(7.0, 3.8) as figure:
+        left, right = figure.subplots(1, 2)
+        left.plot(time, truth[:, 0], color=TRUTH, ls="--", label="truth")
+        left.plot(time, x[run, :, 0], color=OURS, label="estimate, one run")
+        left.set(xlabel="time in s", ylabel="distance x in m", ylim=(0, None))
+        left.legend()
+        right.fill_between(
+            time, band[0], band[2], color=OURS, alpha=0.25, lw=0, label=f"95 % of {len(x)} runs"
+        )
+        right.plot(time, impact[run], color=OURS, label="one run")
+        right.axhline(true_impact, color=TRUTH, ls="--", label="truth")
+        right.set(xlabel="time in s", ylabel="predicted time of impact in s")
+        right.set(ylim=(true_impact - 0.4, true_impact + 0.4))
+        right.legend()
+        return figure
