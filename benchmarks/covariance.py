@@ -25,6 +25,9 @@ CENTRE, AMPLITUDE = np.array([0.6, 0.0, 0.0]), 0.2  # m
 
 FORMS = {
     "P - K H P": lambda P, K, H, S, R: P - K @ H @ P,
+    "P - K H P with K' = solve(S, H P)": lambda P, K, H, S, R: (
+        P - np.linalg.solve(S, H @ P).T @ H @ P
+    ),
     "P - K S K'": lambda P, K, H, S, R: P - K @ S @ K.T,
     "Joseph: (I - K H) P (I - K H)' + K R K'": lambda P, K, H, S, R: (
         (np.eye(6) - K @ H) @ P @ (np.eye(6) - K @ H).T + K @ R @ K.T

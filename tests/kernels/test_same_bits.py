@@ -8,6 +8,7 @@ import ctypes
 import json
 import shutil
 import subprocess
+import types
 
 import numpy as np
 import pytest
@@ -19,20 +20,37 @@ from dopplerlib.derive.printers import c99_function, javascript_function
 from dopplerlib.kernels import doppler, ekf
 
 RUNS, SENSORS, LANES = 37, 6, 16  # 37 leaves the last group of lanes partly empty
-BLOCKS = {"predict": derive.predict_block(), "update": derive.update_block()}
-OUT = {  # rows where the outputs of a block belong, in its order
-    "predict": [*range(ekf.PREDICTED, ekf.PREDICTED + 6), *range(6, 6 + 21)],
-    "update": [
-        *range(ekf.COVARIANCE, ekf.COVARIANCE + 21),
-        *range(ekf.CORRECTION, ekf.CORRECTION + 6),
-        ekf.NIS,
-        ekf.INNOVATION,
-        *range(ekf.GRADIENT, ekf.GRADIENT + 6),
-    ],
+BLOCKS = {
+    block.name: block
+    for block in (
+        derive.predict_block(), derive.linearize_block(), derive.project_block(),
+        derive.update_block(),
+    )
+}  # fmt: skip
+
+
+def rows(first, size, array="work"):
+    """Return row numbers in the work array with the array of one sensor below it."""
+    first += ekf.ROWS if array == "sensor" else 0
+    return list(range(first, first + size))
+
+
+STATE, COVARIANCE = rows(ekf.PREDICTED, 6), rows(ekf.COVARIANCE, 21)
+CORRECTION, NIS, NOISE = rows(ekf.CORRECTION, 6), rows(ekf.NIS, 1), rows(ekf.PROCESS_NOISE, 21)
+MEASUREMENT, SEEN = rows(ekf.MEASUREMENT, 1, "sensor"), rows(ekf.SEEN, 1, "sensor")
+INNOVATION, GRADIENT = rows(ekf.INNOVATION, 1, "sensor"), rows(ekf.GRADIENT, 6, "sensor")
+PROJECTION = rows(ekf.PROJECTION, 6, "sensor")
+IN = {  # rows of the inputs of a block, in its order, before its arguments
+    "predict": STATE + COVARIANCE + NOISE,
+    "linearize": STATE + MEASUREMENT,
+    "project": COVARIANCE + GRADIENT,
+    "update": COVARIANCE + CORRECTION + NIS + SEEN + INNOVATION + GRADIENT,
 }
-IN = {  # rows of the inputs of a block, before its arguments
-    "predict": [*range(ekf.PREDICTED, 6), *range(6, 27), *range(ekf.PROCESS_NOISE, ekf.ROWS)],
-    "update": [*range(ekf.PREDICTED, ekf.SEEN + 1)],
+OUT = {  # rows where the outputs of a block belong, in its order
+    "predict": STATE + COVARIANCE,
+    "linearize": INNOVATION + GRADIENT,
+    "project": PROJECTION,
+    "update": COVARIANCE + CORRECTION + NIS,
 }
 
 
@@ -43,20 +61,40 @@ def cycle(random_cycle):
 
 @pytest.fixture(scope="module")
 def expected(cycle):
-    """Return the work array after one cycle, each run with plain Python numbers."""
+    """Return all rows after one cycle, each run with plain Python numbers."""
+    work, sensors = start(cycle)
     columns = []
-    for run, column in enumerate(cycle.work().T):
-        work = column.tolist()
-        ekf.predict(work, 1, 0, cycle.T)
-        for n, (sensor, variance) in enumerate(parameters(cycle)):
-            work[ekf.MEASUREMENT], work[ekf.SEEN] = (a.tolist()[run] for a in cycle.measured(n))
-            ekf.update(work, 1, 0, *sensor, cycle.g, variance)
-        columns.append(work)
+    for run in range(RUNS):
+        numbers = [array[:, run].tolist() for array in (work, *sensors)]
+        run_cycle(cycle, numbers[0], numbers[1:], ekf, 1, 0)
+        columns.append(np.concatenate(numbers))
     return np.array(columns, dtype=float).T
 
 
-def parameters(cycle):
-    return list(zip(cycle.sensors.tolist(), cycle.variance.tolist(), strict=True))
+def start(cycle):
+    """Return the work array, (ROWS, RUNS), and one for each sensor, before the cycle."""
+    sensors = np.zeros((SENSORS, ekf.SENSOR_ROWS, RUNS))
+    for n, sensor in enumerate(sensors):
+        sensor[ekf.MEASUREMENT], sensor[ekf.SEEN] = cycle.measured(n)
+    return cycle.work(), list(sensors)
+
+
+def steps(cycle):
+    """Yield the name of a kernel, the number of its sensor or None, and its arguments."""
+    yield "predict", None, [cycle.T]
+    for n, position in enumerate(cycle.sensors.tolist()):
+        yield "linearize", n, [*position, cycle.g]
+    for n in range(SENSORS):
+        yield "project", n, []
+    for n, variance in enumerate(cycle.variance.tolist()):
+        yield "update", n, [variance]
+
+
+def run_cycle(cycle, work, sensors, kernels, lanes, lane):
+    """Run one cycle in place, with ``kernels.predict`` and so on."""
+    for name, n, arguments in steps(cycle):
+        arrays = [work] if n is None else [work, sensors[n]]
+        getattr(kernels, name)(*arrays, lanes, lane, *arguments)
 
 
 def assert_same_bits(got, expected):
@@ -66,74 +104,83 @@ def assert_same_bits(got, expected):
     assert not len(differs), f"{len(differs)} of {got.size} differ, the first at {differs[0]}"
 
 
-def run_on_arrays(cycle, predict, update):
-    """Run a cycle on work of shape (ROWS, RUNS): one call for all runs."""
-    work = cycle.work()
-    predict(work, 1, 0, cycle.T)
-    for n, (sensor, variance) in enumerate(parameters(cycle)):
-        work[ekf.MEASUREMENT], work[ekf.SEEN] = cycle.measured(n)
-        update(work, 1, 0, *sensor, cycle.g, variance)
-    return work
+def run_on_arrays(cycle):
+    """Run a cycle on arrays (rows, RUNS): one call for all runs."""
+    work, sensors = start(cycle)
+    run_cycle(cycle, work, sensors, ekf, 1, 0)
+    return np.concatenate([work, *sensors])
 
 
-def run_in_lanes(cycle, predict, update, lanes):
-    """Run a cycle on flat work arrays of `lanes` runs each, as the compiled loop does."""
-    result = np.empty((ekf.ROWS, RUNS))
-    start = cycle.work()
+def run_in_lanes(cycle, kernels, lanes):
+    """Run a cycle on flat arrays of `lanes` runs each, as the compiled loop does."""
+    work, sensors = start(cycle)
+    before = np.concatenate([work, *sensors])
+    result = np.empty_like(before)
     for first in range(0, RUNS, lanes):
         part = slice(first, min(first + lanes, RUNS))
         width = part.stop - part.start
-        work = np.zeros((ekf.ROWS, lanes))
-        work[:, :width] = start[:, part]
-        flat = work.reshape(-1)
-        predict(flat, lanes, width, cycle.T)
-        for n, (sensor, variance) in enumerate(parameters(cycle)):
-            z, seen = cycle.measured(n)
-            work[ekf.MEASUREMENT, :width], work[ekf.SEEN, :width] = z[part], seen[part]
-            update(flat, lanes, width, *sensor, cycle.g, variance)
-        result[:, part] = work[:, :width]
+        flat = np.zeros((len(before), lanes))
+        flat[:, :width] = before[:, part]
+        work, *sensors = (
+            piece.reshape(-1)
+            for piece in np.split(flat, range(ekf.ROWS, len(before), ekf.SENSOR_ROWS))
+        )
+        run_cycle(cycle, work, sensors, kernels, lanes, width)
+        result[:, part] = flat[:, :width]
     return result
 
 
 def test_numpy_arrays_give_the_same_bits(cycle, expected):
-    assert_same_bits(run_on_arrays(cycle, ekf.predict, ekf.update), expected)
+    assert_same_bits(run_on_arrays(cycle), expected)
 
 
 @pytest.fixture(scope="module")
 def compiled():
-    """Return both kernels compiled, each in a loop over the first `width` lanes."""
-    inner_predict = njit(forceinline=True, error_model="numpy")(ekf.predict)
-    inner_update = njit(forceinline=True, error_model="numpy")(ekf.update)
+    """Return the kernels compiled, each in a loop over the first `width` lanes."""
+    predict, linearize, project, update = (
+        njit(forceinline=True, error_model="numpy")(getattr(ekf, name)) for name in BLOCKS
+    )
 
     @njit(error_model="numpy")
-    def predict(work, lanes, width, T):
+    def predict_all(work, lanes, width, T):
         for lane in range(width):
-            inner_predict(work, lanes, lane, T)
+            predict(work, lanes, lane, T)
 
     @njit(error_model="numpy")
-    def update(work, lanes, width, s_x, s_y, s_z, g, variance):
+    def linearize_all(work, sensor, lanes, width, s_x, s_y, s_z, g):
         for lane in range(width):
-            inner_update(work, lanes, lane, s_x, s_y, s_z, g, variance)
+            linearize(work, sensor, lanes, lane, s_x, s_y, s_z, g)
 
-    return predict, update
+    @njit(error_model="numpy")
+    def project_all(work, sensor, lanes, width):
+        for lane in range(width):
+            project(work, sensor, lanes, lane)
+
+    @njit(error_model="numpy")
+    def update_all(work, sensor, lanes, width, variance):
+        for lane in range(width):
+            update(work, sensor, lanes, lane, variance)
+
+    loops = (predict_all, linearize_all, project_all, update_all)
+    return types.SimpleNamespace(**dict(zip(BLOCKS, loops, strict=True)))
 
 
 @pytest.mark.parametrize("lanes", [1, LANES])
 def test_numba_gives_the_same_bits_alone_and_in_lanes(cycle, expected, compiled, lanes):
-    assert_same_bits(run_in_lanes(cycle, *compiled, lanes), expected)
+    assert_same_bits(run_in_lanes(cycle, compiled, lanes), expected)
 
 
 def run_with_scalars(cycle, call):
     """Run a cycle with ``call(block name, rows of numbers) -> rows of outputs``."""
-    work = cycle.work()
-    arguments = {"predict": [[cycle.T]], "update": [[*s, cycle.g, r] for s, r in parameters(cycle)]}
-    for name, steps in arguments.items():
-        for n, step in enumerate(steps):
-            if name == "update":
-                work[ekf.MEASUREMENT], work[ekf.SEEN] = cycle.measured(n)
-            inputs = [[*column, *step] for column in work[IN[name]].T.tolist()]
-            work[OUT[name]] = np.array(call(name, inputs)).T
-    return work
+    work, sensors = start(cycle)
+    for name, n, arguments in steps(cycle):
+        both = np.concatenate([work, np.zeros_like(sensors[0]) if n is None else sensors[n]])
+        inputs = [[*column, *arguments] for column in both[IN[name]].T.tolist()]
+        both[OUT[name]] = np.array(call(name, inputs)).T
+        work = both[: ekf.ROWS]
+        if n is not None:
+            sensors[n] = both[ekf.ROWS :]
+    return np.concatenate([work, *sensors])
 
 
 @pytest.fixture(scope="module")
