@@ -31,6 +31,7 @@ STRIDE = 0.15  # of a step of the walk, relative to the distance from the array
 STEPS = 25  # of the walk, each way: enough for a range that grows thirtyfold
 CORRECTIONS = 3  # iterations that bring a step of the walk back to the valley floor
 PULL = 1e-12  # weight of the box's centre in `_settle`, relative to the information
+SETTLED = 1e-6  # last step of `_settle`, relative to the box; rounding allows some 1e-9
 DISTINCT = 1e-3  # two states differ if a component does by this share of the box
 TIE = 1e-9  # relative difference between equal costs
 
@@ -78,37 +79,44 @@ def _normal_equations(x, t, z, w, positions, c, H, g):
 
 @_compiled
 def _solve(H, damping, rhs, held, L, d):
-    """Solve (H + diag(damping)) d = rhs for the components not held; those of `d` that are stay."""
+    """Solve (H + diag(damping)) d = rhs for the components not held; those of `d` that are stay.
+
+    By L D L' with D kept as its inverse on the diagonal of `L`.
+    """
+    free = np.empty(6, np.int64)
+    m = 0
     for i in range(6):
-        if held[i]:
-            continue
+        if not held[i]:
+            free[m] = i
+            m += 1
+    for a in range(m):
+        i = free[a]
         s = rhs[i]
-        for j in range(6):
-            if held[j]:
-                s -= H[i, j] * d[j]
+        if m < 6:
+            for j in range(6):
+                if held[j]:
+                    s -= H[i, j] * d[j]
         diagonal = H[i, i] + damping[i]
-        q = diagonal
-        for j in range(i):
-            if held[j]:
-                continue
-            e = H[i, j]
-            for k in range(j):
-                if not held[k]:
-                    e -= L[i, k] * L[j, k]
-            e /= L[j, j]
-            L[i, j] = e
-            q -= e * e
-            s -= e * d[j]
+        pivot = diagonal
+        for b in range(a):
+            q = H[i, free[b]]
+            for e in range(b):
+                q -= L[a, e] * L[b, e]
+            # L[a, e] holds L D until the row is complete.
+            L[a, b] = q
+        for b in range(a):
+            q = L[a, b]
+            L[a, b] = q * L[b, b]
+            pivot -= q * L[a, b]
+            s -= L[a, b] * d[free[b]]
         # A pivot below rounding would be noise; the step that follows has to prove itself anyway.
-        L[i, i] = np.sqrt(max(q, 1e-16 * diagonal) + 1e-300)
-        d[i] = s / L[i, i]
-    for i in range(5, -1, -1):
-        if held[i]:
-            continue
-        for j in range(i + 1, 6):
-            if not held[j]:
-                d[i] -= L[j, i] * d[j]
-        d[i] /= L[i, i]
+        L[a, a] = 1 / max(pivot, 1e-16 * diagonal + 1e-300)
+        d[i] = s
+    for a in range(m - 1, -1, -1):
+        s = d[free[a]] * L[a, a]
+        for b in range(a + 1, m):
+            s -= L[b, a] * d[free[b]]
+        d[free[a]] = s
 
 
 @_compiled
@@ -323,35 +331,49 @@ def _walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cen
 def _settle(x, t, z, w, positions, c, lower, upper):
     """Move x among equally likely states to the one nearest to the centre of the box.
 
-    Newton's method with a vanishing prior: it pulls only where the data say nothing. Return
-    whether it arrived.
+    Newton's method with a vanishing prior: it pulls only where the data say nothing. Short steps
+    are for those few sets of equal states that bend sharply. Return whether it arrived.
     """
     H, g, L = np.empty((6, 6)), np.empty(6), np.empty((6, 6))
-    held, d, damping, new = np.empty(6, np.bool_), np.empty(6), np.zeros(6), x.copy()
-    before = _normal_equations(x, t, z, w, positions, c, H, g)
+    held, d = np.empty(6, np.bool_), np.empty(6)
+    towards, last, pull, prior = np.empty(6), np.empty(6), np.empty(6), np.zeros(6)
+    enough = _normal_equations(x, t, z, w, positions, c, H, g) * (1 + TIE) + TIE
     most = 0.0
     for i in range(6):
         most = max(most, H[i, i] * (upper[i] - lower[i]) ** 2)
     for i in range(6):
         if upper[i] > lower[i]:
-            damping[i] = PULL * most / (upper[i] - lower[i]) ** 2
-    for _ in range(2 * STEPS):
-        cost = _normal_equations(new, t, z, w, positions, c, H, g)
-        for i in range(6):
-            g[i] += damping[i] * (new[i] - (lower[i] + upper[i]) / 2)
-        _boxed_step(H, g, damping, new, lower, upper, 0, held, L, d)
-        longest = 0.0
-        for i in range(6):
-            if upper[i] > lower[i]:
-                longest = max(longest, abs(d[i]) / (upper[i] - lower[i]))
-        if longest < 0.1 * DISTINCT:
-            if cost <= before * (1 + TIE) + TIE:
-                x[:] = new
-                return True
-            return False
-        for i in range(6):
-            d[i] *= min(1.0, 0.1 / longest)
-        _move(new, d, lower, upper, new)
+            prior[i] = PULL * most / (upper[i] - lower[i]) ** 2
+    for longest_step in (0.1, 0.02):  # of the box
+        new = x.copy()
+        last[:] = 0.0
+        share = 1.0
+        for _ in range(int(5 / longest_step)):
+            _normal_equations(new, t, z, w, positions, c, H, g)
+            for i in range(6):
+                pull[i] = prior[i] * ((lower[i] + upper[i]) / 2 - new[i])
+                g[i] -= pull[i]
+                towards[i] = 0.0
+            _boxed_step(H, g, prior, new, lower, upper, 0, held, L, d)
+            _solve(H, prior, pull, held, L, towards)
+            length, along, square = 0.0, 0.0, 0.0
+            for i in range(6):
+                length = max(length, np.sqrt(prior[i] / (PULL * most)) * abs(d[i]))
+                along += prior[i] * towards[i] * last[i]
+                square += prior[i] * last[i] ** 2
+            # Where the set bends, a full step is too long or too short: secant.
+            if square > 0:
+                share = min(max(share / max(1 - along / square, 0.1), 0.05), 2.0)
+            share = min(share, longest_step / length)
+            for i in range(6):
+                last[i] = towards[i]
+                d[i] += (share - 1) * towards[i]
+            _move(new, d, lower, upper, new)
+            if length < SETTLED:
+                if _normal_equations(new, t, z, w, positions, c, H, g) <= enough:
+                    x[:] = new
+                    return True
+                break
     return False
 
 
@@ -463,34 +485,29 @@ def _scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
 
 
 @_compiled
-def _lowest_minima(score, shape, chosen):
-    """Write the grid points that are lower than their neighbours to `chosen`; return how many."""
+def _lowest_minima(score, shape, low, spare, chosen):
+    """Write the lowest points that no neighbour is below to `chosen`; return how many."""
+    low[:] = score
+    inner = score.size
+    for n in shape:  # the minimum of three neighbours along one axis after the other
+        inner //= n
+        low, spare = spare, low
+        for i in range(score.size // inner):
+            here = i * inner
+            back = here - inner if i % n > 0 else here
+            front = here + inner if i % n < n - 1 else here
+            for q in range(inner):
+                low[here + q] = min(spare[here + q], min(spare[back + q], spare[front + q]))
     count = 0
-    for i in range(shape[0]):
-        for j in range(shape[1]):
-            for k in range(shape[2]):
-                p = (i * shape[1] + j) * shape[2] + k
-                lowest = True
-                for a in range(max(i - 1, 0), min(i + 2, shape[0])):
-                    for b in range(max(j - 1, 0), min(j + 2, shape[1])):
-                        for e in range(max(k - 1, 0), min(k + 2, shape[2])):
-                            q = (a * shape[1] + b) * shape[2] + e
-                            # Of equal neighbours the first one counts.
-                            if score[q] < score[p] or (score[q] == score[p] and q < p):
-                                lowest = False
-                                break
-                        if not lowest:
-                            break
-                    if not lowest:
-                        break
-                if not lowest or (count == STARTS and score[p] >= score[chosen[count - 1]]):
-                    continue
-                count = min(count + 1, STARTS)
-                place = count - 1
-                while place > 0 and score[chosen[place - 1]] > score[p]:
-                    chosen[place] = chosen[place - 1]
-                    place -= 1
-                chosen[place] = p
+    for p in range(score.size):
+        if score[p] > low[p] or (count == STARTS and score[p] >= score[chosen[count - 1]]):
+            continue
+        count = min(count + 1, STARTS)
+        place = count - 1
+        while place > 0 and score[chosen[place - 1]] > score[p]:
+            chosen[place] = chosen[place - 1]
+            place -= 1
+        chosen[place] = p
     return count
 
 
@@ -555,6 +572,7 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
     Q, R, bound = np.empty((3, sensors, points)), np.empty((9, points)), np.empty((3, 2, points))
     order, rate = np.empty((3, points), np.int64), np.empty((sensors, points))
     v, score = np.empty((3, points)), np.empty(points)
+    low, spare = np.empty(points), np.empty(points)
     prepared = np.full(sensors, np.nan)
     slope, spread = np.empty(sensors), np.empty(sensors)
     data, w = np.empty((samples, sensors)), np.empty((samples, sensors))
@@ -597,7 +615,7 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
                 _project(grid, prepared, positions, c, lower, upper, Q, R, bound, order, rate)
                 break
         _scan(mean_z[0], prepared, slope, spread, c, Q, R, bound, rate, v, score)
-        count = _lowest_minima(score, shape, chosen)
+        count = _lowest_minima(score, shape, low, spare, chosen)
         for m in range(count):
             p = chosen[m]
             for a in range(3):
