@@ -21,7 +21,7 @@ from numba import njit
 
 from ..kernels import doppler as kernel
 
-STARTS = 4  # local minima of the grid that are refined; more did not find more optima
+STARTS = 6  # local minima of the grid that are refined; three or four are usual
 ITERATIONS = 200  # of one refinement; ten are usual
 DAMPING = 1e-6  # of the first step, relative to the diagonal of J'J
 TOLERANCE = 1e-12  # stop when a step promises less, relative to the cost
@@ -29,7 +29,7 @@ NOISE = 1e-15  # relative rounding error of a predicted measurement
 WEAK = 1e-5  # smallest eigenvalue of the scaled information below which `_walk` sets out
 STRIDE = 0.15  # of a step of the walk, relative to the distance from the array
 STEPS = 25  # of the walk, each way: enough for a range that grows thirtyfold
-CORRECTIONS = 3  # iterations that bring a step of the walk back to the valley floor
+CORRECTIONS = 3  # iterations that bring a state next to the valley floor back to it
 PULL = 1e-12  # weight of the box's centre in `_settle`, relative to the information
 SETTLED = 1e-6  # last step of `_settle`, relative to the box; rounding allows some 1e-9
 DISTINCT = 1e-3  # two states differ if a component does by this share of the box
@@ -39,8 +39,16 @@ TIE = 1e-9  # relative difference between equal costs
 # fingerprint of the kernels makes a new kernel a new function.
 _FINGERPRINT = hashlib.sha256(Path(kernel.__file__).read_bytes()).hexdigest()
 
-_compiled = njit(nogil=True, error_model="numpy")
+# Without wrappers for callers from outside, which take a third of the time to compile.
+_compiled = njit(nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 _shift_and_gradient = njit(forceinline=True, error_model="numpy")(kernel.doppler_shift_and_gradient)
+
+
+@_compiled
+def _copy(source, target):
+    """Copy an array; written as assignment to a slice it compiles for seconds."""
+    for i in range(source.size):
+        target[i] = source[i]
 
 
 @_compiled
@@ -159,8 +167,9 @@ def _move(x, d, lower, upper, moved):
 def _refine(x, t, z, w, positions, c, lower, upper, size, iterations):
     """Improve x in place by Levenberg-Marquardt in the box; return its cost and convergence.
 
-    After every step the velocity is solved for anew at the new position. This follows the curved
-    valley of positions whose best velocities differ, and takes a third of the iterations.
+    After a step that gained less than it promised the velocity is solved for anew at the new
+    position. This follows the curved valley of positions whose best velocities differ, and takes
+    a third of the iterations.
     `size` is the norm of the weighted measurements.
     """
     H, g, H_new, g_new = np.empty((6, 6)), np.empty(6), np.empty((6, 6)), np.empty(6)
@@ -178,16 +187,17 @@ def _refine(x, t, z, w, positions, c, lower, upper, size, iterations):
             for j in range(6):
                 promise -= d[i] * H[i, j] * d[j]
         _move(x, d, lower, upper, new)
-        _normal_equations(new, t, z, w, positions, c, H_new, g_new)
-        _boxed_step(H_new, g_new, none, new, lower, upper, 3, held, L, d)
-        _move(new, d, lower, upper, new)
         cost_new = _normal_equations(new, t, z, w, positions, c, H_new, g_new)
+        if cost - cost_new < 0.9 * promise:
+            _boxed_step(H_new, g_new, none, new, lower, upper, 3, held, L, d)
+            _move(new, d, lower, upper, new)
+            cost_new = _normal_equations(new, t, z, w, positions, c, H_new, g_new)
 
         rounding = NOISE * size
         enough = TOLERANCE * cost + rounding * (rounding + 2 * np.sqrt(cost))
         gain = cost - cost_new
         if gain > 0:
-            x[:] = new
+            _copy(new, x)
             cost = cost_new
             H, H_new, g, g_new = H_new, H, g_new, g
             # Nielsen (1999): damping follows how well the quadratic model foretold the gain.
@@ -290,7 +300,7 @@ def _walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cen
     """
     H, g, L = np.empty((6, 6)), np.empty(6), np.empty((6, 6))
     held, e, before, new = np.empty(6, np.bool_), np.empty(6), np.empty(6), np.empty(6)
-    path[STEPS] = x
+    _copy(x, path[STEPS])
     cost[STEPS] = _normal_equations(x, t, z, w, positions, c, H, g)
     first, last = STEPS, STEPS
     for way in (-1, 1):
@@ -315,13 +325,11 @@ def _walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cen
                 e[i] *= stretch
                 before[i] = e[i]
             _move(y, e, lower, upper, new)
-            _refine(
-                new, still_t, still_z, still_w, positions, c, lower, upper, 0.0, CORRECTIONS
-            )
+            _refine(new, still_t, still_z, still_w, positions, c, lower, upper, 0.0, CORRECTIONS)
             if _distance(new, y) < 0.2 * STRIDE * reach:  # at the end of the box
                 break
             here += way
-            path[here] = new
+            _copy(new, path[here])
             cost[here] = _normal_equations(new, t, z, w, positions, c, H, g)
         first, last = min(first, here), max(last, here)
     return first, last
@@ -332,7 +340,8 @@ def _settle(x, t, z, w, positions, c, lower, upper):
     """Move x among equally likely states to the one nearest to the centre of the box.
 
     Newton's method with a vanishing prior: it pulls only where the data say nothing. Short steps
-    are for those few sets of equal states that bend sharply. Return whether it arrived.
+    are for those few sets of equal states that bend sharply. If the cost would rise x stays: then
+    the box leaves one best state only.
     """
     H, g, L = np.empty((6, 6)), np.empty(6), np.empty((6, 6))
     held, d = np.empty(6, np.bool_), np.empty(6)
@@ -370,11 +379,12 @@ def _settle(x, t, z, w, positions, c, lower, upper):
                 d[i] += (share - 1) * towards[i]
             _move(new, d, lower, upper, new)
             if length < SETTLED:
-                if _normal_equations(new, t, z, w, positions, c, H, g) <= enough:
-                    x[:] = new
-                    return True
+                # What the prior has cost in the directions that the data do determine is regained.
+                cost, _ = _refine(new, t, z, w, positions, c, lower, upper, 0.0, CORRECTIONS)
+                if cost <= enough:
+                    _copy(new, x)
+                    return
                 break
-    return False
 
 
 @_compiled
@@ -487,7 +497,7 @@ def _scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
 @_compiled
 def _lowest_minima(score, shape, low, spare, chosen):
     """Write the lowest points that no neighbour is below to `chosen`; return how many."""
-    low[:] = score
+    _copy(score, low)
     inner = score.size
     for n in shape:  # the minimum of three neighbours along one axis after the other
         inner //= n
@@ -611,7 +621,7 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
 
         for n in range(sensors):
             if mean_w[0, n] != prepared[n]:
-                prepared[:] = mean_w[0]
+                _copy(mean_w[0], prepared)
                 _project(grid, prepared, positions, c, lower, upper, Q, R, bound, order, rate)
                 break
         _scan(mean_z[0], prepared, slope, spread, c, Q, R, bound, rate, v, score)
@@ -641,7 +651,7 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
                     and (m == first or path_cost[m] < path_cost[m - 1])
                     and (m == last or path_cost[m] <= path_cost[m + 1])
                 ):
-                    states[count] = path[m]
+                    _copy(path[m], states[count])
                     costs[count], arrived[count] = _refine(
                         states[count], times, data, w, positions, c, lower, upper, size, ITERATIONS
                     )
@@ -651,8 +661,8 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
         _normal_equations(states[best], t_fit, z_fit, w_fit, positions, c, H, g)
         flat = _weakest(H, lower, upper, ones, held, L, e) < singular
         if flat:
-            arrived[best] &= _settle(states[best], t_fit, z_fit, w_fit, positions, c, lower, upper)
-        x[run] = states[best]
+            _settle(states[best], t_fit, z_fit, w_fit, positions, c, lower, upper)
+        _copy(states[best], x[run])
         converged[run] = arrived[best]
         cost[run] = scatter + _normal_equations(
             x[run], t_fit, z_fit, w_fit, positions, c, information[run], g
@@ -666,6 +676,6 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
             if flat:
                 _settle(states[m], t_fit, z_fit, w_fit, positions, c, lower, upper)
             if _differ(states[m], x[run], lower, upper) >= 0:
-                second_x[run] = states[m]
+                _copy(states[m], second_x[run])
                 second_cost[run] = scatter + costs[m]
                 break

@@ -38,7 +38,8 @@ class Start:
         Components on the box at the first sample, other than those that it fixes.
     identifiable : ndarray of bool, shape (...)
         Whether the information at the estimate is regular. If not, other states in the box
-        explain the measurements just as well, and `x` is the one nearest to the centre of the box.
+        explain the measurements just as well (to first order), and `x` is the one of them nearest
+        to the centre of the box.
     converged : ndarray of bool, shape (...)
         Whether the search ended in an optimum to rounding.
     second_x : ndarray, shape (..., 6)
