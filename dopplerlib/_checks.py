@@ -3,19 +3,33 @@
 import numpy as np
 
 
+def real(name, value):
+    """Return `value` as a float array, or raise unless it is made of real numbers.
+
+    Text, booleans, None, complex numbers, dates and masked arrays are refused: NumPy would turn
+    each of them into floats and lose what they meant.
+    """
+    if isinstance(value, np.ma.MaskedArray):
+        raise ValueError(
+            f"{name} must not be a masked array, whose mask would be lost, got {_short(value)}"
+        )
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):  # a ragged nested list
+        array = None
+    if array is None or array.dtype.kind not in "iuf":
+        raise ValueError(f"{name} must be an array of real numbers, got {_short(value)}")
+    return array.astype(float, copy=False)
+
+
 def finite(name, value, shape=None):
     """Return `value` as a float array, or raise if it is not finite or not of `shape`.
 
     `shape` is matched from the right and may hold None for "any length"; more axes may lead.
     """
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be an array of real numbers, got {value!r}") from None
+    array = real(name, value)
     check_shape(name, array, shape)
-    if not np.isfinite(array).all():
-        bad = array[~np.isfinite(array)].flat[0]
-        raise ValueError(f"{name} must be finite, got {bad} in an array of shape {array.shape}")
+    _check_all(name, "finite", array, np.isfinite(array))
     return array
 
 
@@ -29,6 +43,26 @@ def check_shape(name, array, shape):
     ):
         wanted = ", ".join("any" if want is None else str(want) for want in shape)
         raise ValueError(f"{name} must have shape (..., {wanted}), got {array.shape}")
+
+
+def matrix(name, value, shape):
+    """Return `value` as a float array, or raise unless it is one finite matrix of `shape`."""
+    array = finite(name, value, shape)
+    if array.ndim != 2:
+        raise ValueError(f"{name} must be one matrix, got an array of shape {array.shape}")
+    return array
+
+
+def each_run(name, value, batch, shape):
+    """Return `value` (..., *shape) broadcast to (*batch, *shape), or raise if it does not fit."""
+    try:
+        return np.broadcast_to(value, (*batch, *shape))
+    except ValueError:
+        lead = value.shape[: value.ndim - len(shape)]
+        raise ValueError(
+            f"{name} must have leading axes that broadcast against the runs {batch}, "
+            f"got {lead} in an array of shape {value.shape}"
+        ) from None
 
 
 def check_broadcast(name, shape, other_name, other_shape):
@@ -45,8 +79,21 @@ def check_broadcast(name, shape, other_name, other_shape):
 def positive(name, value, shape=None):
     """Return `value` as a float array, or raise if it is not finite and positive."""
     array = finite(name, value, shape)
-    if not (array > 0).all():
-        raise ValueError(f"{name} must be positive, got {array[~(array > 0)].flat[0]}")
+    _check_all(name, "positive", array, array > 0)
+    return array
+
+
+def deviation(name, value, shape=None):
+    """Return `value` as a float array, or raise if a square in it is not finite and positive."""
+    array = positive(name, value, shape)
+    with np.errstate(over="ignore", under="ignore"):
+        square = array * array
+    _check_all(
+        name,
+        "a number whose square is positive and finite",
+        array,
+        (square > 0) & (square < np.inf),
+    )
     return array
 
 
@@ -65,45 +112,71 @@ def positive_number(name, value):
 
 def whole_number(name, value, least=1):
     """Return `value` as an int, or raise if it is not a whole number of at least `least`."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise ValueError(f"{name} must be a whole number of at least {least}, got {value!r}")
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not whole or not least <= value < 2**63:
+        raise ValueError(f"{name} must be a whole number of at least {least}, got {_short(value)}")
     return int(value)
 
 
 def one_of(name, value, choices):
     """Return `value`, or raise if it is none of `choices`."""
-    if value not in choices:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}")
+    if not any(isinstance(value, type(choice)) and value == choice for choice in choices):
+        raise ValueError(
+            f"{name} must be one of {', '.join(map(repr, choices))}, got {_short(value)}"
+        )
+    return value
+
+
+def some_of(name, values, choices):
+    """Return `values`, or raise if it is not a collection that holds only some of `choices`."""
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise ValueError(
+            f"{name} must be a collection of {', '.join(map(repr, choices))}, got {_short(values)}"
+        )
+    return tuple(one_of(name, value, choices) for value in values)
+
+
+def instance(name, value, kind):
+    """Return `value`, or raise if it is not an instance of the class `kind`."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} must be a {kind.__name__}, got {_short(value)}")
     return value
 
 
 def probability(name, value):
     """Return `value` as a float, or raise if it is not strictly between 0 and 1."""
-    number = positive_number(name, value)
-    if number >= 1:
+    number = one_number(name, value)
+    if not 0 < number < 1:
         raise ValueError(f"{name} must lie between 0 and 1, got {number}")
     return number
 
 
-def covariance(name, value, n):
+def covariance(name, value, n, definite=True):
     """Return `value` as a float array, or raise if a matrix in it is not a covariance.
 
-    A covariance is symmetric to rounding and positive definite. It is returned as it came.
+    A covariance is symmetric to rounding and positive definite; with ``definite=False`` it may
+    have no spread in some directions. It is returned as it came.
     """
     array = finite(name, value, (n, n))
-    asymmetry = np.abs(array - array.swapaxes(-1, -2)).max(initial=0.0)
-    if asymmetry > 1e-12 * np.abs(array).max(initial=0.0):
+    largest = np.abs(array).max(axis=(-2, -1), initial=0.0)
+    asymmetry = np.abs(array - array.swapaxes(-1, -2)).max(axis=(-2, -1), initial=0.0)
+    if (asymmetry > 1e-12 * largest).any():
         raise ValueError(
-            f"{name} must be symmetric, got a difference of {asymmetry:.3g} across the diagonal"
+            f"{name} must be symmetric, got a difference of {asymmetry.max():.3g} across "
+            "the diagonal"
         )
-    try:
-        np.linalg.cholesky(array)
-    except np.linalg.LinAlgError:
-        least = np.linalg.eigvalsh(array)[..., 0].min()
-        raise ValueError(
-            f"{name} must be positive definite, got a smallest eigenvalue of {least:.3g}"
-        ) from None
-    return array
+    if definite:
+        try:
+            np.linalg.cholesky(array)
+            return array
+        except np.linalg.LinAlgError:
+            wanted = "positive definite"
+    else:
+        if (np.linalg.eigvalsh(array)[..., :1] >= -1e-12 * largest[..., None]).all():
+            return array
+        wanted = "positive semidefinite"
+    least = np.linalg.eigvalsh(array)[..., 0].min()
+    raise ValueError(f"{name} must be {wanted}, got a smallest eigenvalue of {least:.3g}")
 
 
 def generator(name, value):
@@ -111,6 +184,20 @@ def generator(name, value):
     if not isinstance(value, np.random.Generator):
         raise ValueError(
             f"{name} must be a numpy.random.Generator, for example "
-            f"numpy.random.default_rng(1), got {value!r}"
+            f"numpy.random.default_rng(1), got {_short(value)}"
         )
     return value
+
+
+def _check_all(name, wanted, array, good):
+    """Raise unless all of `good` is true; name the first value of `array` where it is not."""
+    if good.all():
+        return
+    place = tuple(int(i) for i in np.argwhere(~good)[0])
+    where = f" at index {place}" if place else ""
+    raise ValueError(f"{name} must be {wanted}, got {array[place]}{where}")
+
+
+def _short(value, most=100):
+    text = repr(value)
+    return text if len(text) <= most else text[:most] + " ..."

@@ -35,7 +35,7 @@ def doppler_gradient():
 
 
 def in_line_of_sight(expression):
-    """Rewrite `expression` with d = s - p, the inverse range 1/|d|, and 2/lambda as one symbol.
+    """Rewrite `expression` with ``d = s - p``, inverse range ``1/|d|``, and 2/lambda as one name.
 
     The three are what a person would compute first. Naming them leaves only sums and products,
     so that every processor which follows IEEE 754 computes the same bits.
@@ -74,7 +74,7 @@ def gradient_stage():
 
 
 def as_written(expression):
-    """Rewrite `expression` as one would by hand: with d = s - p, the range rho = |d| and lambda."""
+    """Rewrite `expression` as by hand: with ``d = s - p``, the range ``rho = |d|``, and lambda."""
     by_hand = {INVERSE_RANGE: 1 / RANGE, DOPPLER_PER_SPEED: 2 / WAVELENGTH}
     return in_line_of_sight(expression).subs(by_hand)
 

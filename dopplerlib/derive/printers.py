@@ -1,7 +1,7 @@
 """From a block to source text: Python, C99 and JavaScript.
 
 All three print the same operations in the same order, and only those that IEEE 754 defines to the
-last bit (+, -, *, /, square root). So the languages agree exactly, not just closely.
+last bit (``+ - * /`` and the square root). So the languages agree exactly, not just closely.
 """
 
 import textwrap

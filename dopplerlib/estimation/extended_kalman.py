@@ -8,6 +8,7 @@ import numpy as np
 from .. import _checks
 from ..model.doppler import check_clear_of_sensors
 from ..model.motion import constant_velocity
+from ..model.radar_array import RadarArray
 from .track import Track
 
 _OPTIONAL = ("P", "innovation", "S")
@@ -74,15 +75,20 @@ def ekf(
     Raises
     ------
     ValueError
-        If an argument has the wrong shape, a setting is not finite and positive, a covariance is
-        not positive definite, a measurement is infinite, or the target starts on a sensor.
+        If an argument has the wrong shape or is not made of real numbers, a setting is not finite
+        and positive, a covariance is not positive definite, a measurement is infinite, or the
+        target is predicted onto a sensor at the first sample.
 
     Notes
     -----
     Mittermaier et al. (2016), Table 1 and Eqs 4 to 9, 14, 16, 17. R is diagonal, so the sensors
     are processed one after the other on the 21 distinct entries of P, which keeps P symmetric by
     construction and needs no inverse (Bierman 1977).
+
+    Should a prediction meet a sensor later on, or overflow, then NIS is NaN although something
+    was measured, and ``updated`` is False.
     """
+    _checks.instance("array", array, RadarArray)
     z = _measurements(z, array)
     T = _checks.positive_number("T", T)
     F, Q = constant_velocity(T, sigma_p, noise)
@@ -91,14 +97,17 @@ def ekf(
     x0 = _checks.finite("x0", x0, (6,))
     check_clear_of_sensors("F x0", x0 @ F.T, array)
     P0 = _checks.covariance("P0", P0, 6)
-    for name in keep:
-        _checks.one_of("keep", name, _OPTIONAL)
+    keep = _checks.some_of("keep", keep, _OPTIONAL)
+    workers = (os.cpu_count() or 1) if workers is None else _checks.whole_number("workers", workers)
 
     batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
     runs = int(np.prod(batch))
-    z = np.ascontiguousarray(z).reshape(runs, samples, sensors)
-    x0 = _each_run("x0", x0, batch, (6,))
-    P0 = _each_run("P0", P0, batch, (6, 6))
+    x0 = _checks.each_run("x0", x0, batch, (6,))
+    P0 = _checks.each_run("P0", P0, batch, (6, 6))
+    z, x0, P0 = (
+        np.ascontiguousarray(value).reshape(runs, *value.shape[len(batch) :])
+        for value in (z, x0, P0)
+    )
     shapes = {
         "x": (6,), "P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors), "nis": (),
     }  # fmt: skip
@@ -121,7 +130,6 @@ def ekf(
             lower, upper, *results,
         )  # fmt: skip
 
-    workers = os.cpu_count() if workers is None else _checks.whole_number("workers", workers)
     parts = _slices(runs, lanes, workers)
     if len(parts) == 1:
         part(parts[0])
@@ -156,9 +164,10 @@ def gate_bounds(gate, sensors, confidence=0.95):
     Raises
     ------
     ValueError
-        If `gate` is unknown or `confidence` not between 0 and 1.
+        If `gate` is unknown, `sensors` is not a whole number or `confidence` not between 0 and 1.
     """
     _checks.one_of("gate", gate, (None, "upper", "two-sided"))
+    sensors = _checks.whole_number("sensors", sensors, least=0)
     confidence = _checks.probability("confidence", confidence)
     lower = np.full(sensors + 1, -np.inf)
     upper = np.full(sensors + 1, np.inf)
@@ -174,36 +183,26 @@ def gate_bounds(gate, sensors, confidence=0.95):
 
 
 def _measurements(z, array):
-    try:
-        z = np.asarray(z, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"z must be an array of real numbers, got {z!r}") from None
+    z = _checks.real("z", z)
     _checks.check_shape("z", z, (None, len(array)))
     if not z.size:
         raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
     if np.isinf(z).any():
-        raise ValueError("z must be finite, or NaN where a sensor is missing, got inf")
+        place = tuple(int(i) for i in np.argwhere(np.isinf(z))[0])
+        raise ValueError(
+            f"z must be finite, or NaN where a sensor is missing, got {z[place]} at index {place}"
+        )
     return z
 
 
 def _variance(sigma_f, shape):
-    sigma_f = _checks.positive("sigma_f", sigma_f)
+    sigma_f = _checks.deviation("sigma_f", sigma_f)
     try:
         return np.ascontiguousarray(np.broadcast_to(sigma_f**2, shape))
     except ValueError:
         raise ValueError(
             f"sigma_f must broadcast to (K, N) = {shape}, got shape {sigma_f.shape}"
         ) from None
-
-
-def _each_run(name, value, batch, shape):
-    try:
-        value = np.broadcast_to(value, (*batch, *shape))
-    except ValueError:
-        raise ValueError(
-            f"{name} must broadcast against the runs of z, {batch}, got shape {value.shape}"
-        ) from None
-    return np.ascontiguousarray(value).reshape(-1, *shape)
 
 
 def _slices(runs, lanes, workers):

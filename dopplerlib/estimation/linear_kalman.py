@@ -1,4 +1,4 @@
-"""The linear Kalman filter: for linear models, and as a yardstick for others."""
+"""The linear Kalman filter: for linear models, and as a yardstick for the others."""
 
 import numpy as np
 
@@ -15,19 +15,32 @@ def kf_predict(x, P, F, Q):
         State estimates.
     P : array_like, shape (..., n, n)
         Their covariances.
-    F, Q : array_like, shape (n, n)
-        Transition matrix and covariance of the process noise.
+    F, Q : array_like, shape (..., n, n)
+        Transition matrix and covariance of the process noise. Leading axes of all arguments
+        broadcast against one another.
 
     Returns
     -------
     x : ndarray, shape (..., n)
     P : ndarray, shape (..., n, n)
 
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite, or `P` or `Q` is not a covariance (it may be
+        singular).
+
     Notes
     -----
     Mittermaier et al. (2016), Table 1.
     """
-    return (F @ x[..., None])[..., 0], F @ P @ np.swapaxes(F, -1, -2) + Q
+    x = _checks.finite("x", x, (None,))
+    n = x.shape[-1]
+    P = _checks.covariance("P", P, n, definite=False)
+    F = _checks.finite("F", F, (n, n))
+    Q = _checks.covariance("Q", Q, n, definite=False)
+    _check_leading({"x": (x, 1), "P": (P, 2), "F": (F, 2), "Q": (Q, 2)})
+    return _predict(x, P, F, Q)
 
 
 def kf_update(x, P, z, H, R):
@@ -41,10 +54,11 @@ def kf_update(x, P, z, H, R):
         Predicted covariances.
     z : array_like, shape (..., m)
         Measurements.
-    H : array_like, shape (m, n)
+    H : array_like, shape (..., m, n)
         Measurement matrix.
-    R : array_like, shape (m, m)
-        Covariance of the measurement noise.
+    R : array_like, shape (..., m, m)
+        Covariance of the measurement noise. Leading axes of all arguments broadcast against one
+        another.
 
     Returns
     -------
@@ -53,11 +67,45 @@ def kf_update(x, P, z, H, R):
     innovation : ndarray, shape (..., m)
     S : ndarray, shape (..., m, m)
 
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite, `P` is not a covariance (it may be
+        singular), or `R` is not positive definite.
+
     Notes
     -----
     Mittermaier et al. (2016), Table 1; the covariance is (I - K H) P (I - K H)' + K R K' of Bucy
     and Joseph (1968), which holds for any gain and keeps its symmetry.
     """
+    x = _checks.finite("x", x, (None,))
+    n = x.shape[-1]
+    P = _checks.covariance("P", P, n, definite=False)
+    z = _checks.finite("z", z, (None,))
+    m = z.shape[-1]
+    H = _checks.finite("H", H, (m, n))
+    R = _checks.covariance("R", R, m)
+    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 1), "H": (H, 2), "R": (R, 2)})
+    return _update(x, P, z, H, R)
+
+
+def _check_leading(arguments):
+    """Raise unless the axes before the last one or two of all arguments broadcast."""
+    leading = {name: value.shape[: value.ndim - own] for name, (value, own) in arguments.items()}
+    try:
+        np.broadcast_shapes(*leading.values())
+    except ValueError:
+        got = ", ".join(f"{lead} of {name}" for name, lead in leading.items())
+        raise ValueError(
+            f"{', '.join(leading)} must have leading axes that broadcast, got {got}"
+        ) from None
+
+
+def _predict(x, P, F, Q):
+    return (F @ x[..., None])[..., 0], F @ P @ np.swapaxes(F, -1, -2) + Q
+
+
+def _update(x, P, z, H, R):
     Ht = np.swapaxes(H, -1, -2)
     innovation = z - (H @ x[..., None])[..., 0]
     S = H @ P @ Ht + R
@@ -96,7 +144,8 @@ def kf(z, F, Q, H, R, x0, P0):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, or `R` or `P0` is not positive definite.
+        If shapes do not fit, a value is not finite, `R` or `P0` is not positive definite, or `Q`
+        is not a covariance (it may be singular).
 
     Notes
     -----
@@ -112,20 +161,22 @@ def kf(z, F, Q, H, R, x0, P0):
     """
     x0 = _checks.finite("x0", x0, (None,))
     n = x0.shape[-1]
-    H = _checks.finite("H", H, (None, n))
-    m = H.shape[-2]
-    F = _checks.finite("F", F, (n, n))
-    Q = _checks.finite("Q", Q, (n, n))
-    R = _checks.covariance("R", R, m)
+    H = _checks.matrix("H", H, (None, n))
+    m = H.shape[0]
+    F = _checks.matrix("F", F, (n, n))
+    Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
+    R = _checks.matrix("R", _checks.covariance("R", R, m), (m, m))
     P0 = _checks.covariance("P0", P0, n)
     z = _checks.finite("z", z, (None, m))
+    if not z.size:
+        raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
 
     batch, samples = z.shape[:-2], z.shape[-2]
-    x, P = np.broadcast_to(x0, (*batch, n)), np.broadcast_to(P0, (*batch, n, n))
+    x, P = _checks.each_run("x0", x0, batch, (n,)), _checks.each_run("P0", P0, batch, (n, n))
     steps = []
     for k in range(samples):
-        x, P = kf_predict(x, P, F, Q)
-        x, P, innovation, S = kf_update(x, P, z[..., k, :], H, R)
+        x, P = _predict(x, P, F, Q)
+        x, P, innovation, S = _update(x, P, z[..., k, :], H, R)
         steps.append((x, P, innovation, S))
     x, P, innovation, S = (np.stack(values, axis=len(batch)) for values in zip(*steps, strict=True))
     weighted = np.linalg.solve(S, innovation[..., None])[..., 0]

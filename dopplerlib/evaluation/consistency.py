@@ -1,4 +1,4 @@
-"""Consistency of a filter: whether its errors have the size that it claims."""
+"""Consistency of a filter: its errors should have the size that it claims."""
 
 import numpy as np
 
@@ -29,6 +29,16 @@ def nees(track, truth):
     Notes
     -----
     Mittermaier et al. (2016), Eq 12.
+
+    Examples
+    --------
+    Three deviations off in one axis, four in the other, at the second of two samples:
+
+    >>> from dopplerlib import Track
+    >>> x, P = np.array([[0.0, 0.0], [3.0, 4.0]]), np.stack([np.eye(2)] * 2)
+    >>> track = Track(x, P, innovation=None, S=None, nis=None, updated=None)
+    >>> nees(track, truth=np.zeros((2, 2))).tolist()
+    [0.0, 25.0]
     """
     if track.P is None:
         raise ValueError('track must hold P, got None: ask ekf for it with keep=("P",)')

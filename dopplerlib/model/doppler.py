@@ -4,6 +4,7 @@ import numpy as np
 
 from .. import _checks
 from ..kernels import doppler as kernel
+from .radar_array import RadarArray
 
 
 def doppler_shift(x, array):
@@ -24,7 +25,7 @@ def doppler_shift(x, array):
     Raises
     ------
     ValueError
-        If `x` has another shape, is not finite, or lies on a sensor.
+        If `x` has another shape, is not finite, or lies on a sensor, or `array` is no RadarArray.
 
     Notes
     -----
@@ -59,7 +60,7 @@ def doppler_jacobian(x, array):
     Raises
     ------
     ValueError
-        If `x` has another shape, is not finite, or lies on a sensor.
+        If `x` has another shape, is not finite, or lies on a sensor, or `array` is no RadarArray.
 
     Notes
     -----
@@ -89,6 +90,7 @@ def check_clear_of_sensors(name, x, array):
 
 
 def _arguments(x, array):
+    _checks.instance("array", array, RadarArray)
     x = _checks.finite("x", x, (6,))
     check_clear_of_sensors("x", x, array)
     return *np.moveaxis(x[..., None, :], -1, 0), *array.positions.T, array.doppler_per_speed

@@ -42,12 +42,16 @@ def constant_velocity(T, sigma_p, noise="common"):
     ...     0.001, 0.4, "independent")[1]))
     (1, 3)
     """
-    T = _checks.positive_number("T", T)
-    sigma_p = _checks.positive_number("sigma_p", sigma_p)
+    T = _checks.one_number("T", T, _checks.deviation)
+    sigma_p = _checks.one_number("sigma_p", sigma_p, _checks.deviation)
     _checks.one_of("noise", noise, ("common", "independent"))
     eye = np.eye(3)
     F = np.eye(6)
     F[:3, 3:] = T * eye
     axes = np.ones((3, 1)) if noise == "common" else eye
     G = np.vstack([T**2 / 2 * axes, T * axes])
-    return F, sigma_p**2 * (G @ G.T)
+    with np.errstate(over="ignore", invalid="ignore"):
+        Q = sigma_p**2 * (G @ G.T)
+    if not np.isfinite(Q).all():
+        raise ValueError(f"T must give a finite Q with sigma_p = {sigma_p}, got {T}")
+    return F, Q

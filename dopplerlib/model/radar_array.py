@@ -68,7 +68,7 @@ class RadarArray:
 
     @property
     def doppler_per_speed(self):
-        """Doppler shift of a radial speed of 1 m/s: 2 / wavelength, in Hz per m/s."""
+        """Doppler shift of a radial speed of 1 m/s, which is 2 / wavelength, in Hz per m/s."""
         return 2 / self.wavelength
 
     @classmethod

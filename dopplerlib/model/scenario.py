@@ -45,6 +45,17 @@ class Scenario:
     ValueError
         If a field has the wrong shape, is not finite or not positive where it has to be, or if
         the target starts on a sensor.
+
+    Examples
+    --------
+    From 0.8 m in front of a ring, straight towards it, for a second:
+
+    >>> scenario = Scenario(
+    ...     RadarArray.ring(6, 0.2), x0=[0.8, 0, 0, -0.7, 0, 0], T=0.001, samples=1001,
+    ...     sigma_f=0.4, sigma_p=0.4, P0=0.1 * np.eye(6),
+    ... )
+    >>> [round(float(value), 3) for value in (scenario.time[-1], scenario.truth[-1, 0])]
+    [1.0, 0.1]
     """
 
     array: RadarArray
@@ -77,7 +88,7 @@ class Scenario:
 
     @property
     def truth(self):
-        """True states at the samples, shape (K, 6): a straight path at constant velocity."""
+        """True states at the samples, shape (K, 6), on a straight path at constant velocity."""
         path = np.tile(self.x0, (self.samples, 1))
         path[:, :3] += self.time[:, None] * self.x0[3:]
         return path

@@ -8,50 +8,36 @@ import ctypes
 import json
 import shutil
 import subprocess
-import types
 
 import numpy as np
 import pytest
 from numba import njit
 
 from dopplerlib.derive import ekf as derive
-from dopplerlib.derive.doppler import gradient_block
+from dopplerlib.derive.doppler import GRADIENT, STATE, gradient_block
 from dopplerlib.derive.printers import c99_function, javascript_function
 from dopplerlib.kernels import doppler, ekf
 
 RUNS, SENSORS, LANES = 37, 6, 16  # 37 leaves the last group of lanes partly empty
-BLOCKS = {
-    block.name: block
-    for block in (
-        derive.predict_block(), derive.linearize_block(), derive.project_block(),
-        derive.update_block(),
-    )
-}  # fmt: skip
+KERNELS = {name: getattr(ekf, name) for name in ("predict", "linearize", "project", "update")}
+BLOCKS = {name: getattr(derive, f"{name}_block")() for name in KERNELS}
+BLOCKS["doppler_shift_and_gradient"] = gradient_block()
 
-
-def rows(first, size, array="work"):
-    """Return row numbers in the work array with the array of one sensor below it."""
-    first += ekf.ROWS if array == "sensor" else 0
-    return list(range(first, first + size))
-
-
-STATE, COVARIANCE = rows(ekf.PREDICTED, 6), rows(ekf.COVARIANCE, 21)
-CORRECTION, NIS, NOISE = rows(ekf.CORRECTION, 6), rows(ekf.NIS, 1), rows(ekf.PROCESS_NOISE, 21)
-MEASUREMENT, SEEN = rows(ekf.MEASUREMENT, 1, "sensor"), rows(ekf.SEEN, 1, "sensor")
-INNOVATION, GRADIENT = rows(ekf.INNOVATION, 1, "sensor"), rows(ekf.GRADIENT, 6, "sensor")
-PROJECTION = rows(ekf.PROJECTION, 6, "sensor")
-IN = {  # rows of the inputs of a block, in its order, before its arguments
-    "predict": STATE + COVARIANCE + NOISE,
-    "linearize": STATE + MEASUREMENT,
-    "project": COVARIANCE + GRADIENT,
-    "update": COVARIANCE + CORRECTION + NIS + SEEN + INNOVATION + GRADIENT,
-}
-OUT = {  # rows where the outputs of a block belong, in its order
-    "predict": STATE + COVARIANCE,
-    "linearize": INNOVATION + GRADIENT,
-    "project": PROJECTION,
-    "update": COVARIANCE + CORRECTION + NIS,
-}
+PLACES = {}  # array and row of each symbol, by name
+for _array, _start, _symbols in [
+    ("work", ekf.PREDICTED, STATE),
+    ("work", ekf.COVARIANCE, derive.COVARIANCE),
+    ("work", ekf.CORRECTION, derive.CORRECTION),
+    ("work", ekf.NIS, [derive.NIS]),
+    ("work", ekf.PROCESS_NOISE, derive.PROCESS_NOISE),
+    ("sensor", ekf.MEASUREMENT, [derive.MEASUREMENT]),
+    ("sensor", ekf.SEEN, [derive.SEEN]),
+    ("sensor", ekf.INNOVATION, [derive.INNOVATION]),
+    ("sensor", ekf.GRADIENT, GRADIENT),
+    ("sensor", ekf.PROJECTION, derive.PROJECTION),
+]:
+    for _row, _symbol in enumerate(_symbols, _start):
+        PLACES[_symbol.name] = PLACES[f"{_symbol.name}_new"] = _array, _row
 
 
 @pytest.fixture(scope="module")
@@ -59,42 +45,39 @@ def cycle(random_cycle):
     return random_cycle(np.random.default_rng(2016), SENSORS, RUNS, missing=0.1)
 
 
+def run(cycle, kernels, work, sensors, lanes=1, lane=0):
+    """Run a cycle on `work` and one array for each sensor, which hold its measurements."""
+    parameters = list(zip(sensors, cycle.sensors.tolist(), cycle.variance.tolist(), strict=True))
+    kernels["predict"](work, lanes, lane, cycle.T)
+    for sensor, position, _ in parameters:
+        kernels["linearize"](work, sensor, lanes, lane, *position, cycle.g)
+        kernels["project"](work, sensor, lanes, lane)
+    for sensor, _, variance in parameters:
+        kernels["update"](work, sensor, lanes, lane, variance)
+
+
+def sensor_rows(cycle):
+    """Return the arrays of the sensors before the cycle, (SENSORS, SENSOR_ROWS, RUNS)."""
+    rows = np.zeros((SENSORS, ekf.SENSOR_ROWS, RUNS))
+    for n in range(SENSORS):
+        rows[n, ekf.MEASUREMENT], rows[n, ekf.SEEN] = cycle.measured(n)
+    return rows
+
+
+def everything(work, sensors):
+    return np.concatenate([work, *sensors])
+
+
 @pytest.fixture(scope="module")
 def expected(cycle):
     """Return all rows after one cycle, each run with plain Python numbers."""
-    work, sensors = start(cycle)
     columns = []
-    for run in range(RUNS):
-        numbers = [array[:, run].tolist() for array in (work, *sensors)]
-        run_cycle(cycle, numbers[0], numbers[1:], ekf, 1, 0)
-        columns.append(np.concatenate(numbers))
-    return np.array(columns, dtype=float).T
-
-
-def start(cycle):
-    """Return the work array, (ROWS, RUNS), and one for each sensor, before the cycle."""
-    sensors = np.zeros((SENSORS, ekf.SENSOR_ROWS, RUNS))
-    for n, sensor in enumerate(sensors):
-        sensor[ekf.MEASUREMENT], sensor[ekf.SEEN] = cycle.measured(n)
-    return cycle.work(), list(sensors)
-
-
-def steps(cycle):
-    """Yield the name of a kernel, the number of its sensor or None, and its arguments."""
-    yield "predict", None, [cycle.T]
-    for n, position in enumerate(cycle.sensors.tolist()):
-        yield "linearize", n, [*position, cycle.g]
-    for n in range(SENSORS):
-        yield "project", n, []
-    for n, variance in enumerate(cycle.variance.tolist()):
-        yield "update", n, [variance]
-
-
-def run_cycle(cycle, work, sensors, kernels, lanes, lane):
-    """Run one cycle in place, with ``kernels.predict`` and so on."""
-    for name, n, arguments in steps(cycle):
-        arrays = [work] if n is None else [work, sensors[n]]
-        getattr(kernels, name)(*arrays, lanes, lane, *arguments)
+    for i in range(RUNS):
+        work = cycle.work()[:, i].tolist()
+        sensors = sensor_rows(cycle)[:, :, i].tolist()
+        run(cycle, KERNELS, work, sensors)
+        columns.append(np.concatenate([work, *sensors]))
+    return np.array(columns).T
 
 
 def assert_same_bits(got, expected):
@@ -104,83 +87,72 @@ def assert_same_bits(got, expected):
     assert not len(differs), f"{len(differs)} of {got.size} differ, the first at {differs[0]}"
 
 
-def run_on_arrays(cycle):
-    """Run a cycle on arrays (rows, RUNS): one call for all runs."""
-    work, sensors = start(cycle)
-    run_cycle(cycle, work, sensors, ekf, 1, 0)
-    return np.concatenate([work, *sensors])
-
-
-def run_in_lanes(cycle, kernels, lanes):
-    """Run a cycle on flat arrays of `lanes` runs each, as the compiled loop does."""
-    work, sensors = start(cycle)
-    before = np.concatenate([work, *sensors])
-    result = np.empty_like(before)
-    for first in range(0, RUNS, lanes):
-        part = slice(first, min(first + lanes, RUNS))
-        width = part.stop - part.start
-        flat = np.zeros((len(before), lanes))
-        flat[:, :width] = before[:, part]
-        work, *sensors = (
-            piece.reshape(-1)
-            for piece in np.split(flat, range(ekf.ROWS, len(before), ekf.SENSOR_ROWS))
-        )
-        run_cycle(cycle, work, sensors, kernels, lanes, width)
-        result[:, part] = flat[:, :width]
-    return result
-
-
 def test_numpy_arrays_give_the_same_bits(cycle, expected):
-    assert_same_bits(run_on_arrays(cycle), expected)
+    work, sensors = cycle.work(), sensor_rows(cycle)
+    run(cycle, KERNELS, work, sensors)
+    assert_same_bits(everything(work, sensors), expected)
 
 
 @pytest.fixture(scope="module")
 def compiled():
     """Return the kernels compiled, each in a loop over the first `width` lanes."""
-    predict, linearize, project, update = (
-        njit(forceinline=True, error_model="numpy")(getattr(ekf, name)) for name in BLOCKS
-    )
 
-    @njit(error_model="numpy")
-    def predict_all(work, lanes, width, T):
-        for lane in range(width):
-            predict(work, lanes, lane, T)
+    def looped(function):
+        inner = njit(forceinline=True, error_model="numpy")(function)
 
-    @njit(error_model="numpy")
-    def linearize_all(work, sensor, lanes, width, s_x, s_y, s_z, g):
-        for lane in range(width):
-            linearize(work, sensor, lanes, lane, s_x, s_y, s_z, g)
+        @njit(error_model="numpy")
+        def with_sensor(work, sensor, lanes, width, *arguments):
+            for lane in range(width):
+                inner(work, sensor, lanes, lane, *arguments)
 
-    @njit(error_model="numpy")
-    def project_all(work, sensor, lanes, width):
-        for lane in range(width):
-            project(work, sensor, lanes, lane)
+        @njit(error_model="numpy")
+        def without(work, lanes, width, *arguments):
+            for lane in range(width):
+                inner(work, lanes, lane, *arguments)
 
-    @njit(error_model="numpy")
-    def update_all(work, sensor, lanes, width, variance):
-        for lane in range(width):
-            update(work, sensor, lanes, lane, variance)
+        return without if function is ekf.predict else with_sensor
 
-    loops = (predict_all, linearize_all, project_all, update_all)
-    return types.SimpleNamespace(**dict(zip(BLOCKS, loops, strict=True)))
+    return {name: looped(function) for name, function in KERNELS.items()}
 
 
 @pytest.mark.parametrize("lanes", [1, LANES])
 def test_numba_gives_the_same_bits_alone_and_in_lanes(cycle, expected, compiled, lanes):
-    assert_same_bits(run_in_lanes(cycle, compiled, lanes), expected)
+    result = np.empty_like(expected)
+    before = everything(cycle.work(), sensor_rows(cycle))
+    for first in range(0, RUNS, lanes):
+        part = slice(first, min(first + lanes, RUNS))
+        width = part.stop - part.start
+        rows = np.zeros((len(before), lanes))
+        rows[:, :width] = before[:, part]
+        flat = rows.reshape(-1)  # quantity i of lane j at i * lanes + j
+        work, sensors = flat[: ekf.ROWS * lanes], flat[ekf.ROWS * lanes :].reshape(SENSORS, -1)
+        run(cycle, compiled, work, sensors, lanes, width)
+        result[:, part] = rows[:, :width]
+    assert_same_bits(result, expected)
 
 
-def run_with_scalars(cycle, call):
-    """Run a cycle with ``call(block name, rows of numbers) -> rows of outputs``."""
-    work, sensors = start(cycle)
-    for name, n, arguments in steps(cycle):
-        both = np.concatenate([work, np.zeros_like(sensors[0]) if n is None else sensors[n]])
-        inputs = [[*column, *arguments] for column in both[IN[name]].T.tolist()]
-        both[OUT[name]] = np.array(call(name, inputs)).T
-        work = both[: ekf.ROWS]
-        if n is not None:
-            sensors[n] = both[ekf.ROWS :]
-    return np.concatenate([work, *sensors])
+def with_scalars(call):
+    """Return kernels for arrays from ``call(block name, rows of numbers) -> rows of outputs``."""
+
+    def kernel(name):
+        def function(*arguments):
+            arrays, scalars = {"work": arguments[0]}, list(arguments[3:])
+            if name != "predict":
+                arrays["sensor"], scalars = arguments[1], list(arguments[4:])
+            inputs = [
+                arrays[PLACES[symbol.name][0]][PLACES[symbol.name][1]]
+                for symbol in BLOCKS[name].inputs
+                if symbol.name in PLACES
+            ]
+            rows = [[*column, *scalars] for column in np.transpose(inputs).tolist()]
+            outputs = np.transpose(call(name, rows))
+            for symbol, output in zip(BLOCKS[name].outputs, outputs, strict=True):
+                array, row = PLACES[symbol.name]
+                arrays[array][row] = output
+
+        return function
+
+    return {name: kernel(name) for name in KERNELS}
 
 
 @pytest.fixture(scope="module")
@@ -190,8 +162,7 @@ def c99(tmp_path_factory):
     if compiler is None:
         pytest.skip("no C compiler on this machine")
     folder = tmp_path_factory.mktemp("c99")
-    blocks = {**BLOCKS, "doppler_shift_and_gradient": gradient_block()}
-    (folder / "kernels.c").write_text("\n".join(map(c99_function, blocks.values())))
+    (folder / "kernels.c").write_text("\n".join(map(c99_function, BLOCKS.values())))
     # Without -ffp-contract=off some processors would multiply and add with one rounding.
     subprocess.run(
         [compiler, "-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror",
@@ -201,7 +172,7 @@ def c99(tmp_path_factory):
     library = ctypes.CDLL(str(folder / "kernels.so"))
 
     def call(name, rows):
-        block = blocks[name]
+        block = BLOCKS[name]
         function = getattr(library, name)
         function.restype = None
         function.argtypes = [ctypes.c_double] * len(block.inputs) + [ctypes.c_void_p]
@@ -219,8 +190,7 @@ def javascript():
     node = shutil.which("node")
     if node is None:
         pytest.skip("no node on this machine")
-    blocks = {**BLOCKS, "doppler_shift_and_gradient": gradient_block()}
-    text = "\n".join(map(javascript_function, blocks.values()))
+    text = "\n".join(map(javascript_function, BLOCKS.values()))
 
     def call(name, rows):
         # Numbers travel as JSON: the shortest decimal that reads back as the same double. JSON
@@ -238,11 +208,15 @@ def javascript():
 
 
 def test_c99_gives_the_same_bits(cycle, expected, c99):
-    assert_same_bits(run_with_scalars(cycle, c99), expected)
+    work, sensors = cycle.work(), sensor_rows(cycle)
+    run(cycle, with_scalars(c99), work, sensors)
+    assert_same_bits(everything(work, sensors), expected)
 
 
 def test_javascript_gives_the_same_bits(cycle, expected, javascript):
-    assert_same_bits(run_with_scalars(cycle, javascript), expected)
+    work, sensors = cycle.work(), sensor_rows(cycle)
+    run(cycle, with_scalars(javascript), work, sensors)
+    assert_same_bits(everything(work, sensors), expected)
 
 
 @pytest.mark.parametrize("language", ["c99", "javascript", "numpy", "numba"])

@@ -1,0 +1,209 @@
+"""The figures of Fig 6 show the data that they are given, with a name and a unit on everything."""
+
+import json
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from dopplerlib import chi2_interval
+from dopplerlib.figures import figure6 as draw
+from dopplerlib.systems import mittermaier2016 as paper
+
+DATA = Path(__file__).resolve().parents[2] / "data" / "mittermaier2016"
+RUNS, RUN = 20, 3
+INTERVAL = (1.2, 14.4)
+
+
+@pytest.fixture(scope="module")
+def published():
+    return paper.published_figure6()
+
+
+@pytest.fixture(scope="module")
+def result():
+    return paper.figure6(RUNS, rng=np.random.default_rng(31), keep=())
+
+
+@pytest.fixture(scope="module")
+def gated():
+    return paper.figure6(RUNS, rng=np.random.default_rng(31), gate="two-sided", keep=())
+
+
+@pytest.fixture(scope="module")
+def array():
+    return paper.scenario().array
+
+
+@pytest.fixture(scope="module")
+def figures(result, gated, published, array):
+    """Return every figure by name, and how many pyplot had open before and after."""
+    before = plt.get_fignums()
+    figures = {
+        "scene": draw.scene(result, published, array, RUN),
+        "errors": draw.errors(result, published, RUN),
+        "error_bands": draw.error_bands(result, published),
+        "nis": draw.nis(gated, published, INTERVAL, RUN),
+        "nis_averages": draw.nis_averages(
+            {"no gate": result, "gate": gated}, {"drawn": 5.9, "quoted": 5.82}, INTERVAL
+        ),
+        "skipped_counts": draw.skipped_counts(gated, published),
+    }
+    return figures, before, plt.get_fignums()
+
+
+def axes(figures, name):
+    """Return the axes of a figure; a figure of one has it alone."""
+    found = figures[0][name].axes
+    return found[0] if len(found) == 1 else found
+
+
+def lines(ax):
+    """Return {label: line} of the lines that have one."""
+    return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
+
+
+def assert_shows(line, x, y):
+    np.testing.assert_array_equal(line.get_xdata(), x)
+    np.testing.assert_array_equal(line.get_ydata(), y)
+
+
+NAMES = ["scene", "errors", "error_bands", "nis", "nis_averages", "skipped_counts"]
+
+
+def test_every_figure_function_of_the_module_is_tested_here():
+    public = [
+        name
+        for name, value in vars(draw).items()
+        if getattr(value, "__module__", "") == draw.__name__ and not name.startswith("_")
+    ]
+    assert sorted(public) == sorted(NAMES)
+
+
+def test_no_figure_stays_with_pyplot(figures):
+    _, before, after = figures
+    assert after == before == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_figure_fits_the_page_and_can_be_drawn(figures, name):
+    figure = figures[0][name]
+    assert figure.get_figwidth() <= 7
+    figure.canvas.draw()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_axis_has_a_label_that_says_its_unit(figures, name):
+    without_unit = {"NIS", "NIS averaged over one run", "share of runs below"}
+    counts = {"samples below the gate", "samples above the gate"}
+    for ax in figures[0][name].axes:
+        labels = [ax.get_ylabel()]
+        if ax.get_subplotspec().is_last_row():  # axes above share it
+            labels.append(ax.get_xlabel())
+        if hasattr(ax, "get_zlabel"):
+            labels.append(ax.get_zlabel())
+        for label in labels:
+            assert label in without_unit | counts or label.endswith(
+                (" in m", " in cm", " in mm", " in s")
+            ), label
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_curve_is_in_a_legend(figures, name):
+    figure = figures[0][name]
+    legends = [*figure.legends, *(ax.get_legend() for ax in figure.axes if ax.get_legend())]
+    told = {text.get_text() for legend in legends for text in legend.get_texts()}
+    drawn = {label for ax in figure.axes for label in ax.get_legend_handles_labels()[1]}
+    assert drawn
+    assert drawn == told
+
+
+def test_the_scene_shows_sensors_path_and_both_estimates(figures, result, published, array):
+    shown = {
+        label: np.array(line.get_data_3d()).T
+        for label, line in lines(axes(figures, "scene")).items()
+    }
+    np.testing.assert_array_equal(shown["true path"], result.truth[:, :3])
+    np.testing.assert_array_equal(shown["published estimates"], published.path)
+    np.testing.assert_array_equal(shown["our estimates"], result.track.x[RUN, ::20, :3])
+    np.testing.assert_array_equal(shown["sensors"], array.positions)
+    circle = np.array(
+        next(
+            line for line in axes(figures, "scene").lines if line.get_label().startswith("_")
+        ).get_data_3d()
+    )
+    np.testing.assert_allclose(np.linalg.norm(circle, axis=0), 0.2, rtol=1e-12)
+
+
+def test_the_scene_is_seen_from_where_the_paper_sees_it(figures):
+    """A metre along x, y and z goes right and up on the paper as it does in our view."""
+    drawn = json.loads((DATA / "fig6_geometry.json").read_text(encoding="utf-8"))["projection"]
+    ax = axes(figures, "scene")
+    azimuth, elevation = np.deg2rad([ax.azim, ax.elev])
+    right = np.array([-np.sin(azimuth), np.cos(azimuth), 0])
+    towards = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth), 0])
+    towards[2] = np.sin(elevation)
+    up = np.cross(towards, right)
+    theirs = np.array([drawn[f"d_uv_per_m_{axis}"] for axis in "xyz"]) / drawn["scale_units_per_m"]
+    np.testing.assert_allclose(theirs, np.stack([right, -up], axis=1), atol=1e-3)
+
+
+def test_the_errors_are_those_of_one_run_in_centimetres(figures, result, published):
+    for i, ax in enumerate(axes(figures, "errors")):
+        shown = lines(ax)
+        assert_shows(shown["published"], published.time, 100 * published.error[:, i])
+        assert_shows(shown["ours, one run"], result.time, 100 * result.error[RUN, :, i])
+        assert ax.get_ylabel() == f"error of {'xyz'[i]} in cm"
+
+
+def test_the_bands_hold_the_runs_that_they_promise(figures, result, published):
+    for i, ax in enumerate(axes(figures, "error_bands")):
+        shown = lines(ax)
+        assert_shows(shown["published run"], published.time, 1000 * published.error[:, i])
+        np.testing.assert_allclose(
+            shown["median"].get_ydata(), 1000 * np.median(result.error[:, :, i], axis=0), rtol=1e-12
+        )
+        outer, inner = (band.get_paths()[0].vertices for band in ax.collections)
+        assert ax.collections[0].get_label() == f"central 95 % of {RUNS} runs"
+        last = 1000 * np.sort(result.error[:, -1, i])
+        for band, least in [(outer, 0.95), (inner, 0.5)]:
+            bounds = band[band[:, 0] == result.time[-1], 1]
+            inside = np.mean((bounds.min() <= last) & (last <= bounds.max()))
+            assert abs(inside - least) <= 1 / RUNS + 1e-12
+
+
+def test_the_nis_figure_shows_both_runs_and_marks_what_each_left_out(figures, gated, published):
+    ours, theirs = axes(figures, "nis")
+    skipped = ~gated.track.updated[RUN]
+    for ax, values, out, label in [
+        (ours, gated.track.nis[RUN], skipped, "ours, one run"),
+        (theirs, published.nis, published.skipped, "published"),
+    ]:
+        curve, marks, *bounds = ax.lines
+        assert_shows(curve, gated.time, values)
+        assert_shows(marks, gated.time[out], values[out])
+        assert marks.get_label() == f"{label}: {out.sum()} samples not used"
+        assert [set(bound.get_ydata()) for bound in bounds] == [{INTERVAL[0]}, {INTERVAL[1]}]
+
+
+def test_the_averages_are_shown_as_their_distribution(figures, result, gated):
+    ax = axes(figures, "nis_averages")
+    shown = lines(ax)
+    for label, runs in [("no gate", result), ("gate", gated)]:
+        average = runs.track.nis.mean(axis=1)
+        for x, share in zip(shown[label].get_xdata(), shown[label].get_ydata(), strict=True):
+            assert share == pytest.approx(np.mean(average <= x), abs=1e-12)
+    assert set(shown["drawn"].get_xdata()) == {5.9}
+    assert set(shown["quoted"].get_xdata()) == {5.82}
+    (span,) = ax.patches
+    assert (span.get_x(), span.get_x() + span.get_width()) == pytest.approx(INTERVAL)
+
+
+def test_the_counts_are_of_what_each_run_left_out_below_and_above(figures, gated, published):
+    shown = lines(axes(figures, "skipped_counts"))
+    lower, upper = chi2_interval(6)
+    value = gated.track.nis
+    assert_shows(shown["our runs"], (value < lower).sum(axis=1), (value > upper).sum(axis=1))
+    theirs = published.nis[published.skipped]
+    assert_shows(shown["published run"], [np.sum(theirs < 6)], [np.sum(theirs > 6)])

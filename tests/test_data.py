@@ -1,0 +1,129 @@
+"""The data files are what their READMEs say: the files, the columns, and what is missing."""
+
+import csv
+import json
+import math
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+DATA = Path(__file__).resolve().parents[1] / "data"
+FOLDERS = sorted(path for path in DATA.iterdir() if path.is_dir())
+FILES = sorted(path for path in DATA.rglob("*") if path.is_file() and path.name != "README.md")
+PAPER = DATA / "mittermaier2016"
+
+
+def name(path):
+    return path.relative_to(DATA).as_posix()
+
+
+def readme(folder):
+    return (folder / "README.md").read_text(encoding="utf-8")
+
+
+def table_under(title, text):
+    """Return the first column of the table in the section of that title, without its head."""
+    section = text.split(f"## `{title}`\n")[1].split("\n## ")[0]
+    return re.findall(r"^\| `([^`]+)` \|", section, flags=re.MULTILINE)
+
+
+def rows(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def column(path, title):
+    return [float(row[title]) for row in rows(path)]
+
+
+def unknown(path, title):
+    """Return the samples at which a column has no value."""
+    values = zip(column(path, "sample"), column(path, title), strict=True)
+    return [int(sample) for sample, value in values if math.isnan(value)]
+
+
+def test_every_folder_is_in_the_readme_of_the_data():
+    linked = re.findall(r"\]\(([\w-]+)\)", readme(DATA))
+    assert sorted(linked) == [folder.name for folder in FOLDERS]
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=name)
+def test_every_file_is_in_the_readme_of_its_folder_and_no_other(folder):
+    linked = re.findall(r"^\| \[`([^`]+)`\]\(\1\) \|", readme(folder), flags=re.MULTILINE)
+    assert sorted(linked) == [path.name for path in FILES if path.parent == folder]
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=name)
+def test_every_source_is_cited_with_its_doi_and_its_licence(folder):
+    text = readme(folder)
+    assert re.search(r"https://doi\.org/10\.\d{4,}/\S+", text)
+    assert re.search(r"https://creativecommons\.org/licenses/\S+", text)
+
+
+@pytest.mark.parametrize("path", [p for p in FILES if p.suffix == ".csv"], ids=name)
+def test_a_csv_has_the_columns_that_its_readme_explains(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        head, *lines = csv.reader(file)
+    assert head == table_under(path.name, readme(path.parent))
+    assert {len(line) for line in lines} == {len(head)}
+    for line in lines:
+        for value in line:
+            assert math.isfinite(float(value)) or value == "NaN"
+
+
+@pytest.mark.parametrize("path", [p for p in FILES if p.suffix == ".json"], ids=name)
+def test_a_json_file_has_the_entries_that_its_readme_explains(path):
+    content = json.loads(path.read_text(encoding="utf-8"))
+    assert list(content) == table_under(path.name, readme(path.parent))
+
+
+@pytest.mark.parametrize("path", [p for p in FILES if p.suffix == ".toml"], ids=name)
+def test_a_toml_file_names_its_source(path):
+    text = path.read_text(encoding="utf-8")
+    tomllib.loads(text)
+    assert "doi:10." in text.splitlines()[0]
+
+
+@pytest.mark.parametrize("file", ["fig6_nis.csv", "fig6_errors.csv"])
+def test_a_curve_has_every_sample_once_and_in_order(file):
+    count = json.loads((PAPER / "table2.json").read_text())["derived_checks"]["nis_count"]
+    assert column(PAPER / file, "sample") == list(range(1, count + 1))
+
+
+def test_nis_is_known_at_every_sample_and_skips_at_all_but_the_first():
+    path = PAPER / "fig6_nis.csv"
+    assert unknown(path, "nis") == []
+    assert unknown(path, "update_skipped") == [1]
+    assert min(column(path, "nis")) > 0
+    assert set(column(path, "update_skipped")[1:]) == {0, 1}
+
+
+def test_errors_are_unknown_where_the_readme_says():
+    path = PAPER / "fig6_errors.csv"
+    told = re.search(
+        r"that is x at samples (\d+) to (\d+) and z at samples (\d+) to (\d+) and (\d+) to (\d+)",
+        readme(PAPER),
+    )
+    a, b, c, d, e, f = map(int, told.groups())
+    assert unknown(path, "ex_cm") == list(range(a, b + 1))
+    assert unknown(path, "ey_cm") == []
+    assert unknown(path, "ez_cm") == [*range(c, d + 1), *range(e, f + 1)]
+
+
+@pytest.mark.parametrize("axis", "xz")
+def test_a_flag_says_whether_an_error_lies_above_the_axis_and_whether_it_is_known(axis):
+    path = PAPER / "fig6_errors.csv"
+    for value, flag in zip(column(path, f"e{axis}_cm"), column(path, f"e{axis}_flag"), strict=True):
+        if flag == 2:
+            assert math.isnan(value)
+        else:
+            assert flag == (value > 10)
+            assert value >= 0
+
+
+def test_the_final_errors_of_the_curves_are_those_of_the_checks():
+    last = rows(PAPER / "fig6_errors.csv")[-1]
+    checks = json.loads((PAPER / "table2.json").read_text())["derived_checks"]
+    assert [float(last[f"e{axis}_cm"]) for axis in "xyz"] == checks["final_abs_error_cm_digitised"]
