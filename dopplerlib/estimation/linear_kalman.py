@@ -33,6 +33,14 @@ def kf_predict(x, P, F, Q):
     Notes
     -----
     Mittermaier et al. (2016), Table 1.
+
+    Examples
+    --------
+    A position that moves at 2 m/s for one second, with half a metre per second of doubt:
+
+    >>> x, P = kf_predict([0.0, 2.0], np.diag([0.0, 0.25]), [[1, 1], [0, 1]], np.zeros((2, 2)))
+    >>> x.tolist(), P.tolist()
+    ([2.0, 2.0], [[0.25, 0.25], [0.25, 0.25]])
     """
     x = _checks.finite("x", x, (None,))
     n = x.shape[-1]
@@ -77,6 +85,14 @@ def kf_update(x, P, z, H, R):
     -----
     Mittermaier et al. (2016), Table 1; the covariance is (I - K H) P (I - K H)' + K R K' of Bucy
     and Joseph (1968), which holds for any gain and keeps its symmetry.
+
+    Examples
+    --------
+    A measurement as good as the prediction meets it half way:
+
+    >>> x, P, innovation, S = kf_update([0.0], [[1.0]], [4.0], [[1]], [[1]])
+    >>> x.tolist(), P.tolist(), innovation.tolist(), S.tolist()
+    ([2.0], [[0.5]], [4.0], [[2.0]])
     """
     x = _checks.finite("x", x, (None,))
     n = x.shape[-1]
