@@ -123,6 +123,10 @@ def ekf(
         np.ascontiguousarray(value).reshape(runs, *value.shape[len(batch) :])
         for value in (z, x0, P0)
     )
+    # Whether an array may be written to is part of its type: numba would compile the loop again
+    # for every mixture, 5 s each.
+    for value in (z, variance, x0, P0):
+        value.flags.writeable = False
     shapes = {
         "x": (6,), "P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors), "nis": (),
     }  # fmt: skip
