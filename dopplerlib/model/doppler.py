@@ -78,13 +78,15 @@ def doppler_jacobian(x, array):
 
 def check_clear_of_sensors(name, x, array):
     """Raise if a position in `x`, shape (..., 6), is that of a sensor."""
-    for n, sensor in enumerate(array.positions):
-        # Not a comparison for equality: the square of less than 1e-162 m is zero as well.
-        if (np.square(x[..., :3] - sensor).sum(axis=-1) == 0).any():
-            raise ValueError(
-                f"{name} must not lie on a sensor, got a position equal to that of sensor {n}, "
-                f"{sensor.tolist()}"
-            )
+    d = x[..., None, :3] - array.positions
+    # Not a comparison for equality: the square of less than 1e-162 m is zero as well.
+    squared_range = np.einsum("...i,...i->...", d, d)
+    if not squared_range.all():
+        n = int(np.argwhere(squared_range == 0)[0, -1])
+        raise ValueError(
+            f"{name} must not lie on a sensor, got a position equal to that of sensor {n}, "
+            f"{array.positions[n].tolist()}"
+        )
 
 
 def _arguments(x, array):

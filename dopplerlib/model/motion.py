@@ -46,7 +46,8 @@ def constant_velocity(T, sigma_p, noise="common"):
     sigma_p = _checks.one_number("sigma_p", sigma_p, _checks.deviation)
     _checks.one_of("noise", noise, ("common", "independent"))
     eye = np.eye(3)
-    F = np.block([[eye, T * eye], [np.zeros((3, 3)), eye]])
+    F = np.eye(6)
+    F[:3, 3:] = T * eye
     axes = np.ones((3, 1)) if noise == "common" else eye
     G = np.vstack([T**2 / 2 * axes, T * axes])
     with np.errstate(over="ignore", invalid="ignore"):

@@ -133,15 +133,17 @@ def test_a_name_that_is_a_keyword_is_refused():
 
 def test_lanes_are_neither_mixed_up_nor_touched():
     expression = (a - b) / c
-    text = python_lanes(block(expression), {a: 0, b: 2, OUT: 1})
-    assert text.startswith("def f(work, lanes, lane, c):")
+    places = {a: ("work", 0), b: ("other", 1), OUT: ("work", 1)}
+    text = python_lanes(block(expression), places)
+    assert text.startswith("def f(work, other, lanes, lane, c):")
     space = {}
     exec(text, space)
-    work = np.array([[1.0, 2.0, 3.0], [0.0, 0.0, 0.0], [5.0, 8.0, 11.0]])
+    work = np.array([[1.0, 2.0, 3.0], [0.0, 0.0, 0.0]])
+    other = np.array([[9.0, 9.0, 9.0], [5.0, 8.0, 11.0]])
     flat = work.ravel().copy()
-    space["f"](flat, 3, 1, 2.0)
-    assert flat.reshape(3, 3)[1].tolist() == [0.0, -3.0, 0.0]
-    space["f"](work, 1, 0, 2.0)
+    space["f"](flat, other.ravel(), 3, 1, 2.0)
+    assert flat.tolist() == [1.0, 2.0, 3.0, 0.0, -3.0, 0.0]
+    space["f"](work, other, 1, 0, 2.0)
     assert work[1].tolist() == [-2.0, -3.0, -4.0]
 
 

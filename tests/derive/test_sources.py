@@ -50,7 +50,7 @@ def derive(root, seed):
 
 def test_the_text_does_not_depend_on_the_order_of_sets(tmp_path):
     # Python orders sets of strings by a hash that differs from process to process.
-    for seed in (1, 2):
+    for seed in (0, 1):  # these two do order the sets of this program differently
         root = tmp_path / str(seed)
         for part in ("derive", "kernels"):
             shutil.copytree(

@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import mpmath
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,17 +17,28 @@ from dopplerlib.kernels import ekf as kernel
 SEEDS = st.integers(0, 2**32 - 1)
 SENSORS = st.integers(1, 12)
 UPPER = np.triu_indices(6)
+KERNELS = (kernel.predict, kernel.linearize, kernel.project, kernel.update)
 
 
-def run(cycle, work, predict=kernel.predict, update=kernel.update, number=lambda x: x):
-    """Run one cycle on `work`; return what it left there and the innovations."""
+def run(cycle, work, kernels=KERNELS, number=lambda x: x):
+    """Run one cycle on `work`; return it and the rows of each sensor."""
+    predict, linearize, project, update = kernels
     predict(work, 1, 0, number(cycle.T))
-    innovations = []
-    for n, sensor in enumerate(cycle.sensors):
-        work[kernel.MEASUREMENT], work[kernel.SEEN] = map(number, cycle.measured(n))
-        update(work, 1, 0, *map(number, sensor), number(cycle.g), number(cycle.variance[n]))
-        innovations.append(np.copy(work[kernel.INNOVATION]))  # a row is overwritten
-    return work, innovations
+    sensors = []
+    for n, position in enumerate(cycle.sensors):
+        sensor = [number(np.zeros(len(cycle.x))) for _ in range(kernel.SENSOR_ROWS)]
+        sensor[kernel.MEASUREMENT], sensor[kernel.SEEN] = map(number, cycle.measured(n))
+        linearize(work, sensor, 1, 0, *map(number, position), number(cycle.g))
+        project(work, sensor, 1, 0)
+        sensors.append(sensor)
+    for sensor, variance in zip(sensors, cycle.variance, strict=True):
+        update(work, sensor, 1, 0, number(variance))
+    return work, sensors
+
+
+def innovations(sensors):
+    """Return the innovations, (N, runs)."""
+    return np.array([sensor[kernel.INNOVATION] for sensor in sensors])
 
 
 def of_sensors(cycle, which):
@@ -82,11 +92,11 @@ def test_with_doubles_the_cycle_is_table_1(random_cycle, seed, n, missing):
     # by itself, because it is a difference: it is right to some hundred roundings of z and g |v|,
     # since a target close by sees the rounding of its own position enlarged.
     cycle = random_cycle(np.random.default_rng(seed), n, 20, missing)
-    work, innovations = run(cycle, cycle.work())
+    work, sensors = run(cycle, cycle.work())
     P_new = unpacked(work[kernel.COVARIANCE : kernel.COVARIANCE + 21])
     for row in range(len(cycle.x)):
         seen = ~np.isnan(cycle.z[row])
-        nu = np.array([innovation[row] for innovation in innovations])[seen]
+        nu = innovations(sensors)[seen, row]
         z = cycle.z[row][seen]
         correction, P, P_expected, nis, S, nu_expected = table_1(cycle, row, nu)
         speed = np.linalg.norm(cycle.x[row, 3:])
@@ -119,7 +129,7 @@ def test_with_doubles_the_time_update_is_f_p_f_plus_q(random_cycle, seed):
 @settings(max_examples=100, derandomize=True, deadline=None)
 @given(SEEDS, SENSORS, st.data())
 def test_a_missing_sensor_is_no_sensor(random_cycle, seed, n, data):
-    # To the last bit, but for the Jacobian and innovation rows, which the caller ignores then.
+    # To the last bit.
     rng = np.random.default_rng(seed)
     cycle = random_cycle(rng, n, 20)
     gone = data.draw(st.sets(st.integers(0, n - 1), min_size=1))
@@ -177,7 +187,7 @@ def test_with_fifty_digits_the_cycle_is_table_1(random_cycle, seed, n, missing, 
         return
     with mpmath.workdps(50):
         work = [mpmath.mpf(value) for value in cycle.work()[:, 0].tolist()]
-        run(cycle, work, precise(kernel.predict), precise(kernel.update), _mpf)
+        run(cycle, work, [precise(function) for function in KERNELS], _mpf)
         correction, P_new, P, nis, _ = precise_table_1(cycle)
         s = [mpmath.sqrt(P[i, i]) for i in range(6)]
         tolerance = mpmath.mpf(10) ** -30
@@ -205,38 +215,43 @@ def test_the_order_of_the_sensors_does_not_matter(random_cycle, seed, n):
     cycle = random_cycle(rng, n, 1)
     order = rng.permutation(n)
     other = of_sensors(cycle, order)
-    (work, nu), (shuffled, nu_shuffled) = run(cycle, cycle.work()), run(other, other.work())
+    work, sensors = run(cycle, cycle.work())
+    shuffled, sensors_shuffled = run(other, other.work())
+    nu = innovations(sensors)
     # The innovation belongs to the predicted state, so it does not know of the sensors before.
-    assert np.array_equal(np.stack(nu)[order], np.stack(nu_shuffled))
+    assert np.array_equal(nu[order], innovations(sensors_shuffled))
     _, P, _, _, S, _ = table_1(cycle, 0)
     s, tolerance = np.sqrt(np.diag(P)), 1e-14 * np.linalg.cond(S)
     P_new, P_shuffled = (
         unpacked(w[kernel.COVARIANCE : kernel.COVARIANCE + 21]) for w in (work, shuffled)
     )
     assert (np.abs(P_new - P_shuffled) <= tolerance * np.outer(s, s)).all()
-    _, _, _, nis, _, _ = table_1(cycle, 0, np.array(nu)[:, 0])
+    _, _, _, nis, _, _ = table_1(cycle, 0, nu[:, 0])
     assert abs(work[kernel.NIS, 0] - shuffled[kernel.NIS, 0]) <= tolerance * nis
 
 
-def test_the_innovation_and_jacobian_rows_are_those_of_the_predicted_state(random_cycle):
-    # Even after five sensors have corrected: Table 1 linearises once, where the prediction is.
-    cycle = random_cycle(np.random.default_rng(11), 6, 3)
-    work, nu = run(cycle, cycle.work())
-    predicted = cycle.x @ transition(cycle.T).T
-    to_sensor = cycle.sensors[-1] - predicted[:, :3]
-    rho = np.linalg.norm(to_sensor, axis=1, keepdims=True)
-    u, v = to_sensor / rho, predicted[:, 3:]
-    radial = np.sum(u * v, axis=1, keepdims=True)
-    H = cycle.g * np.concatenate([(radial * u - v) / rho, u], axis=1)
-    got = work[kernel.GRADIENT : kernel.GRADIENT + 6].T
-    assert got == pytest.approx(H, rel=1e-12)
-    assert nu[-1] == pytest.approx(cycle.z[:, -1] - cycle.g * radial[:, 0], rel=1e-10)
+@settings(max_examples=50, derandomize=True, deadline=None)
+@given(SEEDS, SENSORS)
+def test_the_rows_of_the_sensors_give_the_innovation_covariance(random_cycle, seed, n):
+    # h_n of one sensor times u_m = P h_m of another is entry (n, m) of H P H'. The scale of an
+    # entry is the product of the standard deviations on the diagonal.
+    cycle = random_cycle(np.random.default_rng(seed), n, 1)
+    _, sensors = run(cycle, cycle.work())
+    rows = np.array(sensors)[..., 0]
+    h = rows[:, kernel.GRADIENT : kernel.GRADIENT + 6]
+    u = rows[:, kernel.PROJECTION : kernel.PROJECTION + 6]
+    _, _, _, _, S, _ = table_1(cycle, 0)
+    s = np.sqrt(np.diag(S))
+    assert (np.abs(h @ u.T + np.diag(cycle.variance) - S) <= 1e-13 * np.outer(s, s)).all()
 
 
-def test_the_rows_of_the_work_array_do_not_overlap():
-    starts = {
-        "PREDICTED": 6, "COVARIANCE": 21, "CORRECTION": 6, "NIS": 1, "MEASUREMENT": 1,
-        "SEEN": 1, "INNOVATION": 1, "GRADIENT": 6, "PROCESS_NOISE": 21,
-    }  # fmt: skip
-    rows = [getattr(kernel, name) + i for name, size in starts.items() for i in range(size)]
-    assert sorted(rows) == list(range(kernel.ROWS))
+def test_the_rows_of_the_arrays_do_not_overlap():
+    def rows(**sizes):
+        return sorted(
+            getattr(kernel, name) + i for name, size in sizes.items() for i in range(size)
+        )
+
+    work = rows(PREDICTED=6, COVARIANCE=21, CORRECTION=6, NIS=1, PROCESS_NOISE=21)
+    assert work == list(range(kernel.ROWS))
+    sensor = rows(MEASUREMENT=1, SEEN=1, INNOVATION=1, GRADIENT=6, PROJECTION=6)
+    assert sensor == list(range(kernel.SENSOR_ROWS))

@@ -14,26 +14,30 @@ import pytest
 from numba import njit
 
 from dopplerlib.derive import ekf as derive
-from dopplerlib.derive.doppler import gradient_block
+from dopplerlib.derive.doppler import GRADIENT, STATE, gradient_block
 from dopplerlib.derive.printers import c99_function, javascript_function
 from dopplerlib.kernels import doppler, ekf
 
 RUNS, SENSORS, LANES = 37, 6, 16  # 37 leaves the last group of lanes partly empty
-BLOCKS = {"predict": derive.predict_block(), "update": derive.update_block()}
-OUT = {  # rows where the outputs of a block belong, in its order
-    "predict": [*range(ekf.PREDICTED, ekf.PREDICTED + 6), *range(6, 6 + 21)],
-    "update": [
-        *range(ekf.COVARIANCE, ekf.COVARIANCE + 21),
-        *range(ekf.CORRECTION, ekf.CORRECTION + 6),
-        ekf.NIS,
-        ekf.INNOVATION,
-        *range(ekf.GRADIENT, ekf.GRADIENT + 6),
-    ],
-}
-IN = {  # rows of the inputs of a block, before its arguments
-    "predict": [*range(ekf.PREDICTED, 6), *range(6, 27), *range(ekf.PROCESS_NOISE, ekf.ROWS)],
-    "update": [*range(ekf.PREDICTED, ekf.SEEN + 1)],
-}
+KERNELS = {name: getattr(ekf, name) for name in ("predict", "linearize", "project", "update")}
+BLOCKS = {name: getattr(derive, f"{name}_block")() for name in KERNELS}
+BLOCKS["doppler_shift_and_gradient"] = gradient_block()
+
+PLACES = {}  # array and row of each symbol, by name
+for _array, _start, _symbols in [
+    ("work", ekf.PREDICTED, STATE),
+    ("work", ekf.COVARIANCE, derive.COVARIANCE),
+    ("work", ekf.CORRECTION, derive.CORRECTION),
+    ("work", ekf.NIS, [derive.NIS]),
+    ("work", ekf.PROCESS_NOISE, derive.PROCESS_NOISE),
+    ("sensor", ekf.MEASUREMENT, [derive.MEASUREMENT]),
+    ("sensor", ekf.SEEN, [derive.SEEN]),
+    ("sensor", ekf.INNOVATION, [derive.INNOVATION]),
+    ("sensor", ekf.GRADIENT, GRADIENT),
+    ("sensor", ekf.PROJECTION, derive.PROJECTION),
+]:
+    for _row, _symbol in enumerate(_symbols, _start):
+        PLACES[_symbol.name] = PLACES[f"{_symbol.name}_new"] = _array, _row
 
 
 @pytest.fixture(scope="module")
@@ -41,22 +45,39 @@ def cycle(random_cycle):
     return random_cycle(np.random.default_rng(2016), SENSORS, RUNS, missing=0.1)
 
 
+def run(cycle, kernels, work, sensors, lanes=1, lane=0):
+    """Run a cycle on `work` and one array for each sensor, which hold its measurements."""
+    parameters = list(zip(sensors, cycle.sensors.tolist(), cycle.variance.tolist(), strict=True))
+    kernels["predict"](work, lanes, lane, cycle.T)
+    for sensor, position, _ in parameters:
+        kernels["linearize"](work, sensor, lanes, lane, *position, cycle.g)
+        kernels["project"](work, sensor, lanes, lane)
+    for sensor, _, variance in parameters:
+        kernels["update"](work, sensor, lanes, lane, variance)
+
+
+def sensor_rows(cycle):
+    """Return the arrays of the sensors before the cycle, (SENSORS, SENSOR_ROWS, RUNS)."""
+    rows = np.zeros((SENSORS, ekf.SENSOR_ROWS, RUNS))
+    for n in range(SENSORS):
+        rows[n, ekf.MEASUREMENT], rows[n, ekf.SEEN] = cycle.measured(n)
+    return rows
+
+
+def everything(work, sensors):
+    return np.concatenate([work, *sensors])
+
+
 @pytest.fixture(scope="module")
 def expected(cycle):
-    """Return the work array after one cycle, each run with plain Python numbers."""
+    """Return all rows after one cycle, each run with plain Python numbers."""
     columns = []
-    for run, column in enumerate(cycle.work().T):
-        work = column.tolist()
-        ekf.predict(work, 1, 0, cycle.T)
-        for n, (sensor, variance) in enumerate(parameters(cycle)):
-            work[ekf.MEASUREMENT], work[ekf.SEEN] = (a.tolist()[run] for a in cycle.measured(n))
-            ekf.update(work, 1, 0, *sensor, cycle.g, variance)
-        columns.append(work)
-    return np.array(columns, dtype=float).T
-
-
-def parameters(cycle):
-    return list(zip(cycle.sensors.tolist(), cycle.variance.tolist(), strict=True))
+    for i in range(RUNS):
+        work = cycle.work()[:, i].tolist()
+        sensors = sensor_rows(cycle)[:, :, i].tolist()
+        run(cycle, KERNELS, work, sensors)
+        columns.append(np.concatenate([work, *sensors]))
+    return np.array(columns).T
 
 
 def assert_same_bits(got, expected):
@@ -66,74 +87,72 @@ def assert_same_bits(got, expected):
     assert not len(differs), f"{len(differs)} of {got.size} differ, the first at {differs[0]}"
 
 
-def run_on_arrays(cycle, predict, update):
-    """Run a cycle on work of shape (ROWS, RUNS): one call for all runs."""
-    work = cycle.work()
-    predict(work, 1, 0, cycle.T)
-    for n, (sensor, variance) in enumerate(parameters(cycle)):
-        work[ekf.MEASUREMENT], work[ekf.SEEN] = cycle.measured(n)
-        update(work, 1, 0, *sensor, cycle.g, variance)
-    return work
-
-
-def run_in_lanes(cycle, predict, update, lanes):
-    """Run a cycle on flat work arrays of `lanes` runs each, as the compiled loop does."""
-    result = np.empty((ekf.ROWS, RUNS))
-    start = cycle.work()
-    for first in range(0, RUNS, lanes):
-        part = slice(first, min(first + lanes, RUNS))
-        width = part.stop - part.start
-        work = np.zeros((ekf.ROWS, lanes))
-        work[:, :width] = start[:, part]
-        flat = work.reshape(-1)
-        predict(flat, lanes, width, cycle.T)
-        for n, (sensor, variance) in enumerate(parameters(cycle)):
-            z, seen = cycle.measured(n)
-            work[ekf.MEASUREMENT, :width], work[ekf.SEEN, :width] = z[part], seen[part]
-            update(flat, lanes, width, *sensor, cycle.g, variance)
-        result[:, part] = work[:, :width]
-    return result
-
-
 def test_numpy_arrays_give_the_same_bits(cycle, expected):
-    assert_same_bits(run_on_arrays(cycle, ekf.predict, ekf.update), expected)
+    work, sensors = cycle.work(), sensor_rows(cycle)
+    run(cycle, KERNELS, work, sensors)
+    assert_same_bits(everything(work, sensors), expected)
 
 
 @pytest.fixture(scope="module")
 def compiled():
-    """Return both kernels compiled, each in a loop over the first `width` lanes."""
-    inner_predict = njit(forceinline=True, error_model="numpy")(ekf.predict)
-    inner_update = njit(forceinline=True, error_model="numpy")(ekf.update)
+    """Return the kernels compiled, each in a loop over the first `width` lanes."""
 
-    @njit(error_model="numpy")
-    def predict(work, lanes, width, T):
-        for lane in range(width):
-            inner_predict(work, lanes, lane, T)
+    def looped(function):
+        inner = njit(forceinline=True, error_model="numpy")(function)
 
-    @njit(error_model="numpy")
-    def update(work, lanes, width, s_x, s_y, s_z, g, variance):
-        for lane in range(width):
-            inner_update(work, lanes, lane, s_x, s_y, s_z, g, variance)
+        @njit(error_model="numpy")
+        def with_sensor(work, sensor, lanes, width, *arguments):
+            for lane in range(width):
+                inner(work, sensor, lanes, lane, *arguments)
 
-    return predict, update
+        @njit(error_model="numpy")
+        def without(work, lanes, width, *arguments):
+            for lane in range(width):
+                inner(work, lanes, lane, *arguments)
+
+        return without if function is ekf.predict else with_sensor
+
+    return {name: looped(function) for name, function in KERNELS.items()}
 
 
 @pytest.mark.parametrize("lanes", [1, LANES])
 def test_numba_gives_the_same_bits_alone_and_in_lanes(cycle, expected, compiled, lanes):
-    assert_same_bits(run_in_lanes(cycle, *compiled, lanes), expected)
+    result = np.empty_like(expected)
+    before = everything(cycle.work(), sensor_rows(cycle))
+    for first in range(0, RUNS, lanes):
+        part = slice(first, min(first + lanes, RUNS))
+        width = part.stop - part.start
+        rows = np.zeros((len(before), lanes))
+        rows[:, :width] = before[:, part]
+        flat = rows.reshape(-1)  # quantity i of lane j at i * lanes + j
+        work, sensors = flat[: ekf.ROWS * lanes], flat[ekf.ROWS * lanes :].reshape(SENSORS, -1)
+        run(cycle, compiled, work, sensors, lanes, width)
+        result[:, part] = rows[:, :width]
+    assert_same_bits(result, expected)
 
 
-def run_with_scalars(cycle, call):
-    """Run a cycle with ``call(block name, rows of numbers) -> rows of outputs``."""
-    work = cycle.work()
-    arguments = {"predict": [[cycle.T]], "update": [[*s, cycle.g, r] for s, r in parameters(cycle)]}
-    for name, steps in arguments.items():
-        for n, step in enumerate(steps):
-            if name == "update":
-                work[ekf.MEASUREMENT], work[ekf.SEEN] = cycle.measured(n)
-            inputs = [[*column, *step] for column in work[IN[name]].T.tolist()]
-            work[OUT[name]] = np.array(call(name, inputs)).T
-    return work
+def with_scalars(call):
+    """Return kernels for arrays from ``call(block name, rows of numbers) -> rows of outputs``."""
+
+    def kernel(name):
+        def function(*arguments):
+            arrays, scalars = {"work": arguments[0]}, list(arguments[3:])
+            if name != "predict":
+                arrays["sensor"], scalars = arguments[1], list(arguments[4:])
+            inputs = [
+                arrays[PLACES[symbol.name][0]][PLACES[symbol.name][1]]
+                for symbol in BLOCKS[name].inputs
+                if symbol.name in PLACES
+            ]
+            rows = [[*column, *scalars] for column in np.transpose(inputs).tolist()]
+            outputs = np.transpose(call(name, rows))
+            for symbol, output in zip(BLOCKS[name].outputs, outputs, strict=True):
+                array, row = PLACES[symbol.name]
+                arrays[array][row] = output
+
+        return function
+
+    return {name: kernel(name) for name in KERNELS}
 
 
 @pytest.fixture(scope="module")
@@ -143,8 +162,7 @@ def c99(tmp_path_factory):
     if compiler is None:
         pytest.skip("no C compiler on this machine")
     folder = tmp_path_factory.mktemp("c99")
-    blocks = {**BLOCKS, "doppler_shift_and_gradient": gradient_block()}
-    (folder / "kernels.c").write_text("\n".join(map(c99_function, blocks.values())))
+    (folder / "kernels.c").write_text("\n".join(map(c99_function, BLOCKS.values())))
     # Without -ffp-contract=off some processors would multiply and add with one rounding.
     subprocess.run(
         [compiler, "-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror",
@@ -154,7 +172,7 @@ def c99(tmp_path_factory):
     library = ctypes.CDLL(str(folder / "kernels.so"))
 
     def call(name, rows):
-        block = blocks[name]
+        block = BLOCKS[name]
         function = getattr(library, name)
         function.restype = None
         function.argtypes = [ctypes.c_double] * len(block.inputs) + [ctypes.c_void_p]
@@ -172,8 +190,7 @@ def javascript():
     node = shutil.which("node")
     if node is None:
         pytest.skip("no node on this machine")
-    blocks = {**BLOCKS, "doppler_shift_and_gradient": gradient_block()}
-    text = "\n".join(map(javascript_function, blocks.values()))
+    text = "\n".join(map(javascript_function, BLOCKS.values()))
 
     def call(name, rows):
         # Numbers travel as JSON: the shortest decimal that reads back as the same double. JSON
@@ -191,11 +208,15 @@ def javascript():
 
 
 def test_c99_gives_the_same_bits(cycle, expected, c99):
-    assert_same_bits(run_with_scalars(cycle, c99), expected)
+    work, sensors = cycle.work(), sensor_rows(cycle)
+    run(cycle, with_scalars(c99), work, sensors)
+    assert_same_bits(everything(work, sensors), expected)
 
 
 def test_javascript_gives_the_same_bits(cycle, expected, javascript):
-    assert_same_bits(run_with_scalars(cycle, javascript), expected)
+    work, sensors = cycle.work(), sensor_rows(cycle)
+    run(cycle, with_scalars(javascript), work, sensors)
+    assert_same_bits(everything(work, sensors), expected)
 
 
 @pytest.mark.parametrize("language", ["c99", "javascript", "numpy", "numba"])

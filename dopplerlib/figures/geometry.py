@@ -1,0 +1,278 @@
+"""The geometry of Doppler shifts: lines of sight, iso-Doppler cones, curves, sensitivities."""
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+
+from ..model.doppler import doppler_shift
+from .scene import HALO, LABEL, arrow, project, sensor_colors, spread
+from .style import BOUND, OURS, SENSOR, TRUTH, styled
+
+
+def iso_doppler_directions(array, x, around):
+    """Return directions from each sensor in which a target would show the same Doppler shift.
+
+    At a fixed velocity the shift depends only on the angle between the line of sight and the
+    velocity. So the positions with the shift of state `x` form a cone: apex at the sensor, axis
+    along the velocity, target of `x` on it.
+
+    Parameters
+    ----------
+    array : RadarArray
+        The N sensors.
+    x : array_like, shape (6,)
+        State in m and m/s, with a velocity other than zero.
+    around : array_like, shape (M,)
+        Angles around the axis of the cone in rad; 0 is the direction of the target itself.
+
+    Returns
+    -------
+    ndarray, shape (N, M, 3)
+        Unit vectors. A target at ``sensor + distance * direction`` with the velocity of `x` has
+        the Doppler shift of `x`, for any positive distance.
+    """
+    x, around = np.asarray(x, float), np.asarray(around, float)[:, None]
+    axis = x[3:] / np.linalg.norm(x[3:])
+    to_target = x[:3] - array.positions
+    to_target = to_target / np.linalg.norm(to_target, axis=1, keepdims=True)
+    along = (to_target @ axis)[:, None] * axis
+    across = to_target - along
+    directions = np.cos(around) * across[:, None] + np.sin(around) * np.cross(axis, across)[:, None]
+    return along[:, None] + directions
+
+
+def iso_doppler_cut(array, x, around):
+    """Return the curves in which a plane through the target cuts the iso-Doppler cones.
+
+    Parameters
+    ----------
+    array : RadarArray
+        The N sensors.
+    x : array_like, shape (6,)
+        State in m and m/s, moving towards or away from the plane x = 0.
+    around : array_like, shape (M,)
+        Angles around the axis of the cone in rad; 0 is the target itself.
+
+    Returns
+    -------
+    ndarray, shape (N, M, 3)
+        Positions in m whose first coordinate is that of the target; NaN where a line of the cone
+        never meets the plane.
+    """
+    directions = iso_doppler_directions(array, x, around)
+    distance = np.full(directions.shape[:2], np.nan)
+    ahead = x[0] - array.positions[:, :1]
+    np.divide(ahead, directions[..., 0], out=distance, where=ahead * directions[..., 0] > 0)
+    return array.positions[:, None] + distance[..., None] * directions
+
+
+def draw_doppler_curves(ax, time, shifts, names=None):
+    """Draw one Doppler curve for each sensor, labelled at its end."""
+    n = shifts.shape[-1]
+    names = [str(i + 1) for i in range(n)] if names is None else names
+    height = np.ptp(shifts) or 1.0
+    heights = spread(shifts[-1], 0.075 * height)
+    for curve, color, name, end in zip(shifts.T, sensor_colors(n), names, heights, strict=True):
+        ax.plot(time, curve, color=color, label=name)
+        ax.annotate(
+            name,
+            (time[-1], curve[-1]),
+            (time[-1] + 0.05 * np.ptp(time), end),
+            color=color,
+            va="center",
+            arrowprops={"arrowstyle": "-", "color": color, "lw": 0.6, "shrinkA": 0, "shrinkB": 0},
+        )
+    ax.set(xlabel="time (s)", ylabel="Doppler shift (Hz)")
+    ax.margins(x=0)
+
+
+def doppler_curves(time, shifts, names=None):
+    """Return a figure of the Doppler shift at each sensor over time.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Times in s.
+    shifts : ndarray, shape (K, N)
+        Doppler shifts in Hz.
+    names : sequence of str, optional
+        Labels of the sensors; their numbers, from 1, if None.
+    """
+    with styled(7, 3.6) as figure:
+        ax = figure.subplots()
+        draw_doppler_curves(ax, time, shifts, names)
+        if shifts.min() < 0 < shifts.max():
+            ax.axhline(0, color=BOUND, lw=0.8)
+        return figure
+
+
+def two_sensors(array, x):
+    """Return the top view of a moving platform, and of the same scene from the platform.
+
+    Parameters
+    ----------
+    array : RadarArray
+        Two sensors or more in the plane z = 0.
+    x : array_like, shape (6,)
+        State of the target relative to the platform in m and m/s, in the plane z = 0.
+    """
+    x = np.asarray(x, float)
+    p, v, sensors = x[:2], x[3:5], array.positions[:, :2]
+    scale = 0.4  # metres on paper for 1 m/s
+    arc = np.exp(1j * np.linspace(-0.6, 0.9, 200))
+    with styled(7, 3.4) as figure:
+        axes = figure.subplots(1, 2, sharex=True, sharey=True)
+        titles = ("The platform moves ...", "... or, seen from it, the target")
+        for ax, title in zip(axes, titles, strict=True):
+            for n, s in enumerate(sensors, start=1):
+                circle = np.linalg.norm(p - s) * arc
+                ax.plot(s[0] + circle.real, s[1] + circle.imag, "--", color=BOUND, lw=0.9)
+                ax.plot(*np.transpose([s, p]), ":", color=SENSOR, lw=1)
+                ax.plot(*s, "o", color=SENSOR, ms=9)
+                ax.annotate(rf"$\mathbf{{s}}_{n}$", s, (-15, 0), color=SENSOR, **LABEL)
+            ax.plot(*sensors.T, color=SENSOR, lw=5, alpha=0.3, zorder=0)
+            ax.plot(*p, "s", color=TRUTH, ms=7, zorder=5)
+            ax.annotate(r"$\mathbf{p}$", p, (13, 6), **LABEL)
+            ax.set(title=title, xlabel="x (m)", aspect="equal")
+        arrow(axes[0], sensors.mean(axis=0), -scale * v, SENSOR, r"$\mathbf{u}$", (-8, 8))
+        arrow(axes[1], p, scale * v, TRUTH, r"$\mathbf{v} = -\mathbf{u}$", (34, -2))
+        for s, shift in zip(sensors, doppler_shift(x, array), strict=True):
+            toward = (s - p) / np.linalg.norm(s - p)
+            closing = scale * (toward @ v) * toward
+            axes[1].plot(*np.transpose([p, p + closing]), color=OURS, lw=4, solid_capstyle="butt")
+            axes[1].plot(*np.transpose([p + scale * v, p + closing]), ":", color=TRUTH, lw=1)
+            axes[1].annotate(
+                f"{shift:+.0f} Hz", p + 0.7 * (s - p), (0, 0), color=OURS, bbox=HALO, **LABEL
+            )
+        axes[0].set(ylabel="y (m)", xlim=(-0.15, p[0] + 0.3), ylim=(-0.35, 0.45))
+        return figure
+
+
+def iso_doppler_lines(array, x, extent=(0.0, 1.0, -0.45, 0.45)):
+    """Return the iso-Doppler lines of one sensor, and the lines of all sensors through a target.
+
+    Parameters
+    ----------
+    array : RadarArray
+        Sensors in the plane z = 0.
+    x : array_like, shape (6,)
+        State of the target in m and m/s, in the plane z = 0.
+    extent : tuple
+        Left, right, lower and upper edge of what is shown, in m.
+    """
+    x = np.asarray(x, float)
+    left, right, lower, upper = extent
+    middle = type(array)(array.positions[len(array) // 2][None], array.wavelength)
+    grid = np.zeros((200, 200, 6)) + x
+    grid[..., 0], grid[..., 1] = np.meshgrid(
+        np.linspace(left + 1e-6, right, 200), np.linspace(lower, upper, 200)
+    )
+    with styled(7, 4.1) as figure:
+        parts = figure.subplots(2, 2, height_ratios=(1, 0.05), gridspec_kw={"hspace": 0.03})
+        (one, every), (scale, key) = parts
+        top = array.doppler_per_speed * np.linalg.norm(x[3:])
+        area = one.contourf(grid[..., 0], grid[..., 1], doppler_shift(grid, middle)[..., 0],
+                            top * np.linspace(-1, 1, 17), cmap="PuOr_r")  # fmt: skip
+        figure.colorbar(area, cax=scale, label="Doppler shift (Hz)", location="bottom",
+                        ticks=[-100, -50, 0, 50, 100])  # fmt: skip
+        _draw_lines(one, middle, x, (TRUTH,))
+        _draw_lines(every, array, x, sensor_colors(len(array)))
+        key.axis("off")
+        key.legend(
+            [Line2D([], [], color=SENSOR, ls=style) for style in ("-", "--")],
+            ["side of the target", "other side"],
+            loc="upper center",
+            ncols=2,
+        )
+        for ax, shown in ((one, middle), (every, array)):
+            ax.plot(*shown.positions[:, :2].T, "o", color=SENSOR, ms=8, mec="white", zorder=5)
+            ax.plot(*x[:2], "s", color=TRUTH, ms=7, zorder=5)
+            arrow(ax, x[:2], 0.25 * x[3:5], TRUTH, r"$\mathbf{v}$", (11, -4))
+            ax.set(xlim=(left - 0.05, right), ylim=(lower, upper), xlabel="x (m)", aspect="equal")
+            ax.grid(False)
+        one.set(ylabel="y (m)", title="One sensor: shift by position")
+        every.set_title(f"{len(array)} sensors: lines of the target's shift")
+        return figure
+
+
+def _draw_lines(ax, array, x, colors):
+    """Draw both branches of the iso-Doppler line of state `x` at each sensor."""
+    for s, branches, color in zip(
+        array.positions, iso_doppler_directions(array, x, [0.0, np.pi]), colors, strict=True
+    ):
+        for branch, style in zip(branches, ("-", "--"), strict=True):
+            ax.plot(*(s + np.outer([0, 5], branch))[:, :2].T, style, color=color, lw=1.3)
+
+
+def iso_doppler_cones(array, x, azimuth=-62.0, elevation=20.0):
+    """Return the iso-Doppler cones of all sensors in space, and their cut at the target's range.
+
+    Parameters
+    ----------
+    array : RadarArray
+        Sensors near the plane x = 0.
+    x : array_like, shape (6,)
+        State of the target in m and m/s.
+    azimuth, elevation : float
+        From where the cones are seen, in degrees; see `project`.
+    """
+    x = np.asarray(x, float)
+    around = np.linspace(0, 2 * np.pi, 181)
+    cut = iso_doppler_cut(array, x, around)
+
+    def view(points):
+        return project(points, azimuth, elevation)
+
+    with styled(7, 3.6) as figure:
+        space, plane = figure.subplots(1, 2, width_ratios=(1.5, 1))
+        for n, color in enumerate(sensor_colors(len(array))):
+            s = array.positions[n]
+            rays = np.stack([np.broadcast_to(s, cut[n, ::9].shape), cut[n, ::9]], axis=1)
+            lines = LineCollection(view(rays), colors=color, linewidths=0.4, alpha=0.6)
+            space.add_collection(lines)
+            space.plot(*view(cut[n]).T, color=color, lw=1.4)
+            space.plot(*view(s), "o", color=color, ms=7, mec="white")
+            plane.plot(cut[n, :, 1], cut[n, :, 2], color=color, lw=1.4, label=f"{n + 1}")
+            far = cut[n, 90]
+            plane.annotate(f"{n + 1}", far[1:], (0, 0), color=color, bbox=HALO, **LABEL)
+        target = view(x[:3])
+        space.plot(*target, "s", color=TRUTH, ms=7, zorder=5)
+        step = view(x[:3] + 0.3 * x[3:]) - target
+        arrow(space, target, step, TRUTH, r"$\mathbf{v}$", (0, -13))
+        space.set(aspect="equal", title="Six cones, one for each sensor")
+        space.axis("off")
+        plane.plot(x[1], x[2], "s", color=TRUTH, ms=7, zorder=5)
+        plane.set(
+            aspect="equal", xlabel="y (m)", ylabel="z (m)", title=f"Their cut at x = {x[0]:.2f} m"
+        )
+        return figure
+
+
+def sensitivities(time, jacobian, sigma_f):
+    """Return what one snapshot says about each coordinate, if it knew all the others.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Times in s.
+    jacobian : ndarray, shape (K, N, 6)
+        Derivatives of the Doppler shifts, in Hz per m and Hz per m/s.
+    sigma_f : float
+        Standard deviation of a Doppler measurement in Hz.
+    """
+    per_cm = np.sqrt((jacobian**2).sum(axis=-2)) / 100
+    styles = ("-", "--", ":")
+    with styled(7, 3.5) as figure:
+        axes = figure.subplots(1, 2, sharey=True)
+        names = (("x", "y", "z"), (r"v_x", r"v_y", r"v_z"))
+        units = ("Hz per cm", "Hz per cm/s")
+        for ax, first, group, unit in zip(axes, (0, 3), names, units, strict=True):
+            for i, (name, style) in enumerate(zip(group, styles, strict=True)):
+                ax.semilogy(time, per_cm[:, first + i], style, color=OURS, label=f"${name}$", lw=2)
+            ax.axhline(sigma_f, color=BOUND, lw=1)
+            ax.annotate(r"$\sigma_f$", (time[-1], sigma_f), (-8, 7), color=BOUND, **LABEL)
+            ax.set(xlabel="time (s)", title=f"{unit}, all sensors together")
+            ax.legend()
+            ax.margins(x=0)
+        axes[0].set_ylabel("sensitivity")
+        return figure
