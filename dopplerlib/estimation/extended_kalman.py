@@ -99,7 +99,9 @@ def ekf(
     ... )
     >>> truth, z = simulate(scenario, 16, rng=np.random.default_rng(1))
     >>> start = scenario.x0 + [0.05, 0.02, -0.03, 0, 0, 0]
-    >>> track = ekf(z, scenario.array, start, scenario.P0, T=0.001, sigma_p=0.4, sigma_f=0.4)
+    >>> track = ekf(
+    ...     z, scenario.array, start, scenario.P0, T=0.001, sigma_p=0.4, sigma_f=0.4
+    ... )
     >>> track.x.shape, track.P.shape, track.nis.shape
     ((16, 100, 6), (16, 100, 6, 6), (16, 100))
     """

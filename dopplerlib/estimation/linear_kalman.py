@@ -36,9 +36,10 @@ def kf_predict(x, P, F, Q):
 
     Examples
     --------
-    A position that moves at 2 m/s for one second, with half a metre per second of doubt:
+    A position that moves at 2 m/s for one second, known to 0.5 m/s:
 
-    >>> x, P = kf_predict([0.0, 2.0], np.diag([0.0, 0.25]), [[1, 1], [0, 1]], np.zeros((2, 2)))
+    >>> F, Q = [[1, 1], [0, 1]], np.zeros((2, 2))
+    >>> x, P = kf_predict([0.0, 2.0], np.diag([0.0, 0.25]), F, Q)
     >>> x.tolist(), P.tolist()
     ([2.0, 2.0], [[0.25, 0.25], [0.25, 0.25]])
     """
@@ -169,7 +170,7 @@ def kf(z, F, Q, H, R, x0, P0):
 
     Examples
     --------
-    The mean of three equal measurements of a constant, with hardly any prior:
+    The mean of three equally good measurements of a constant, with hardly any prior:
 
     >>> track = kf([[1.0], [2.0], [3.0]], [[1]], [[0]], [[1]], [[1]], [0], [[1e12]])
     >>> round(float(track.x[-1, 0]), 6), round(float(track.P[-1, 0, 0]), 6)
