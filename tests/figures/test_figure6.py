@@ -137,7 +137,7 @@ def test_the_scene_shows_sensors_path_and_both_estimates(figures, result, publis
 
 
 def test_the_scene_is_seen_from_where_the_paper_sees_it(figures):
-    """A metre along x, y and z goes right and up on the paper as it does in our view."""
+    """A meter along x, y and z goes right and up on the paper as it does in our view."""
     drawn = json.loads((DATA / "fig6_geometry.json").read_text(encoding="utf-8"))["projection"]
     ax = axes(figures, "scene")
     azimuth, elevation = np.deg2rad([ax.azim, ax.elev])
@@ -149,7 +149,7 @@ def test_the_scene_is_seen_from_where_the_paper_sees_it(figures):
     np.testing.assert_allclose(theirs, np.stack([right, -up], axis=1), atol=1e-3)
 
 
-def test_the_errors_are_those_of_one_run_in_centimetres(figures, result, published):
+def test_the_errors_are_those_of_one_run_in_centimeters(figures, result, published):
     for i, ax in enumerate(axes(figures, "errors")):
         shown = lines(ax)
         assert_shows(shown["published"], published.time, 100 * published.error[:, i])
