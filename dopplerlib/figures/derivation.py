@@ -3,7 +3,10 @@
 import numpy as np
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
-from .style import BOUND, CYCLE, OURS, PUBLISHED, TRUTH, styled
+from .style import BOUND, OURS, PUBLISHED, TRUTH, styled
+
+# Of the palette of the book, without a meaning elsewhere.
+_ORANGE, _PINK = "#E69F00", "#CC79A7"
 
 _DOUBLE = 2.0**-53  # relative error of one rounding
 
@@ -41,11 +44,11 @@ def one_text(stages, products):
             )
 
         for i, text in enumerate(stages):
-            box(i, middle, text, 1.5, OURS if i else PUBLISHED)
+            box(i, middle, text, 1.5, BOUND if i else PUBLISHED)
             if i:
                 arrow((i - 0.08, middle), (i + 0.08, middle))
         for i, text in enumerate(reversed(products)):
-            box(len(stages), i + 0.5, text, 0.72, CYCLE[2])
+            box(len(stages), i + 0.5, text, 0.72, OURS)
             arrow((len(stages) - 0.08, middle), (len(stages) + 0.08, i + 0.5))
         return figure
 
@@ -68,7 +71,7 @@ def derivative_errors(steps, errors):
         ax = figure.subplots()
         markers = ("o", "s", "^", "D")
         for (label, error), marker, color in zip(
-            errors.items(), markers, (PUBLISHED, CYCLE[2], OURS, CYCLE[3]), strict=False
+            errors.items(), markers, (_ORANGE, _PINK, OURS, TRUTH), strict=False
         ):
             shown = np.maximum(error, _DOUBLE)
             ax.loglog(steps, shown, marker=marker, ms=3.5, lw=1.0, color=color, label=label)
@@ -104,7 +107,7 @@ def position_errors(time, errors):
     with styled(7.0, 3.6) as figure:
         ax = figure.subplots()
         for (label, error), color, style in zip(
-            errors.items(), (OURS, PUBLISHED), ("-", "--"), strict=False
+            errors.items(), (OURS, _ORANGE), ("-", "--"), strict=False
         ):
             lower, middle, upper = np.quantile(error, [0.025, 0.5, 0.975], axis=0)
             ax.fill_between(time, lower, upper, color=color, alpha=0.2, lw=0)
