@@ -115,7 +115,8 @@ def ekf(
     check_clear_of_sensors("F x0", x0 @ F.T, array)
     P0 = _checks.covariance("P0", P0, 6)
     keep = _checks.some_of("keep", keep, _OPTIONAL)
-    workers = (os.cpu_count() or 1) if workers is None else _checks.whole_number("workers", workers)
+    if workers is not None:
+        workers = _checks.whole_number("workers", workers)
 
     batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
     runs = int(np.prod(batch))
@@ -151,12 +152,12 @@ def ekf(
             lower, upper, *results,
         )  # fmt: skip
 
-    parts = _slices(runs, lanes, workers)
-    if len(parts) == 1:
-        part(parts[0])
+    if runs <= lanes:
+        part(slice(None))
     else:
+        workers = workers or os.cpu_count() or 1
         with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(part, parts))
+            list(pool.map(part, _slices(runs, lanes, workers)))
     return Track(
         **{
             name: value.reshape(*batch, *value.shape[1:]) if wanted.get(name, True) else None
