@@ -55,6 +55,8 @@ def matrix(name, value, shape):
 
 def each_run(name, value, batch, shape):
     """Return `value` (..., *shape) broadcast to (*batch, *shape), or raise if it does not fit."""
+    if value.shape == (*batch, *shape):
+        return value
     try:
         return np.broadcast_to(value, (*batch, *shape))
     except ValueError:
@@ -99,6 +101,8 @@ def deviation(name, value, shape=None):
 
 def one_number(name, value, check=finite):
     """Return `value` as a float, or raise if it is not one number that passes `check`."""
+    if type(value) is float and 1e-150 < value < 1e150:
+        return value  # passes every check there is, without becoming an array
     array = check(name, value)
     if array.ndim:
         raise ValueError(f"{name} must be one number, got an array of shape {array.shape}")

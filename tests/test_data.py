@@ -56,7 +56,7 @@ def test_every_file_is_in_the_readme_of_its_folder_and_no_other(folder):
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=name)
-def test_every_source_is_cited_with_its_doi_and_its_licence(folder):
+def test_every_source_is_cited_with_its_doi_and_its_license(folder):
     text = readme(folder)
     assert re.search(r"https://doi\.org/10\.\d{4,}/\S+", text)
     assert re.search(r"https://creativecommons\.org/licenses/\S+", text)

@@ -12,7 +12,7 @@ from sympy.printing.jscode import JavascriptCodePrinter
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
-WIDTH = 100
+WIDTH = 79  # what a page of the book shows without a scroll bar
 
 
 _NODES = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow)

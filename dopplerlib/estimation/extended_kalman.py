@@ -87,6 +87,23 @@ def ekf(
 
     Should a prediction meet a sensor later on, or overflow, then NIS is NaN although something
     was measured, and ``updated`` is False.
+
+    Examples
+    --------
+    Sixteen records of a tenth of a second, from a start that is about right:
+
+    >>> from dopplerlib import Scenario, simulate
+    >>> scenario = Scenario(
+    ...     RadarArray.ring(6, 0.2), x0=[0.8, 0.1, 0.1, -0.7, 0, 0],
+    ...     T=0.001, samples=100, sigma_f=0.4, sigma_p=0.4, P0=0.01 * np.eye(6),
+    ... )
+    >>> truth, z = simulate(scenario, 16, rng=np.random.default_rng(1))
+    >>> start = scenario.x0 + [0.05, 0.02, -0.03, 0, 0, 0]
+    >>> track = ekf(
+    ...     z, scenario.array, start, scenario.P0, T=0.001, sigma_p=0.4, sigma_f=0.4
+    ... )
+    >>> track.x.shape, track.P.shape, track.nis.shape
+    ((16, 100, 6), (16, 100, 6, 6), (16, 100))
     """
     _checks.instance("array", array, RadarArray)
     z = _measurements(z, array)
@@ -98,7 +115,8 @@ def ekf(
     check_clear_of_sensors("F x0", x0 @ F.T, array)
     P0 = _checks.covariance("P0", P0, 6)
     keep = _checks.some_of("keep", keep, _OPTIONAL)
-    workers = (os.cpu_count() or 1) if workers is None else _checks.whole_number("workers", workers)
+    if workers is not None:
+        workers = _checks.whole_number("workers", workers)
 
     batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
     runs = int(np.prod(batch))
@@ -108,6 +126,10 @@ def ekf(
         np.ascontiguousarray(value).reshape(runs, *value.shape[len(batch) :])
         for value in (z, x0, P0)
     )
+    # Whether an array may be written to is part of its type: numba would compile the loop again
+    # for every mixture, 5 s each.
+    for value in (z, variance, x0, P0):
+        value.flags.writeable = False
     shapes = {
         "x": (6,), "P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors), "nis": (),
     }  # fmt: skip
@@ -130,12 +152,12 @@ def ekf(
             lower, upper, *results,
         )  # fmt: skip
 
-    parts = _slices(runs, lanes, workers)
-    if len(parts) == 1:
-        part(parts[0])
+    if runs <= lanes:
+        part(slice(None))
     else:
+        workers = workers or os.cpu_count() or 1
         with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(part, parts))
+            list(pool.map(part, _slices(runs, lanes, workers)))
     return Track(
         **{
             name: value.reshape(*batch, *value.shape[1:]) if wanted.get(name, True) else None
@@ -165,6 +187,16 @@ def gate_bounds(gate, sensors, confidence=0.95):
     ------
     ValueError
         If `gate` is unknown, `sensors` is not a whole number or `confidence` not between 0 and 1.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Section 3.5: outlier detection and gating by NIS, Eq 14.
+
+    Examples
+    --------
+    >>> lower, upper = gate_bounds("two-sided", 6)
+    >>> round(float(lower[6]), 3), round(float(upper[6]), 3)
+    (1.237, 14.449)
     """
     _checks.one_of("gate", gate, (None, "upper", "two-sided"))
     sensors = _checks.whole_number("sensors", sensors, least=0)

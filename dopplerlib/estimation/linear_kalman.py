@@ -33,6 +33,15 @@ def kf_predict(x, P, F, Q):
     Notes
     -----
     Mittermaier et al. (2016), Table 1.
+
+    Examples
+    --------
+    A position that moves at 2 m/s for one second, known to 0.5 m/s:
+
+    >>> F, Q = [[1, 1], [0, 1]], np.zeros((2, 2))
+    >>> x, P = kf_predict([0.0, 2.0], np.diag([0.0, 0.25]), F, Q)
+    >>> x.tolist(), P.tolist()
+    ([2.0, 2.0], [[0.25, 0.25], [0.25, 0.25]])
     """
     x = _checks.finite("x", x, (None,))
     n = x.shape[-1]
@@ -77,6 +86,14 @@ def kf_update(x, P, z, H, R):
     -----
     Mittermaier et al. (2016), Table 1; the covariance is (I - K H) P (I - K H)' + K R K' of Bucy
     and Joseph (1968), which holds for any gain and keeps its symmetry.
+
+    Examples
+    --------
+    A measurement as good as the prediction meets it half way:
+
+    >>> x, P, innovation, S = kf_update([0.0], [[1.0]], [4.0], [[1]], [[1]])
+    >>> x.tolist(), P.tolist(), innovation.tolist(), S.tolist()
+    ([2.0], [[0.5]], [4.0], [[2.0]])
     """
     x = _checks.finite("x", x, (None,))
     n = x.shape[-1]
@@ -153,7 +170,7 @@ def kf(z, F, Q, H, R, x0, P0):
 
     Examples
     --------
-    The mean of three equal measurements of a constant, with hardly any prior:
+    The mean of three equally good measurements of a constant, with hardly any prior:
 
     >>> track = kf([[1.0], [2.0], [3.0]], [[1]], [[0]], [[1]], [[1]], [0], [[1e12]])
     >>> round(float(track.x[-1, 0]), 6), round(float(track.P[-1, 0, 0]), 6)

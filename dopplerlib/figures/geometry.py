@@ -118,7 +118,7 @@ def two_sensors(array, x):
     """
     x = np.asarray(x, float)
     p, v, sensors = x[:2], x[3:5], array.positions[:, :2]
-    scale = 0.4  # metres on paper for 1 m/s
+    scale = 0.4  # meters on paper for 1 m/s
     arc = np.exp(1j * np.linspace(-0.6, 0.9, 200))
     with styled(7, 3.4) as figure:
         axes = figure.subplots(1, 2, sharex=True, sharey=True)

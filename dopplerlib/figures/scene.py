@@ -9,7 +9,7 @@ HALO = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", 
 
 
 def sensor_colors(n):
-    """Return `n` colours for sensors 1 to n, from dark to light."""
+    """Return `n` colors for sensors 1 to n, from dark to light."""
     return [_SHADES[i * len(_SHADES) // n] for i in range(n)]
 
 

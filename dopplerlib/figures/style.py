@@ -4,15 +4,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib.pyplot as plt
-from matplotlib import rc_params_from_file
 
 STYLE = Path(__file__).with_name("style.mplstyle")
-
-# For curves that differ in nothing but a number. As colours, not as "C0" to "C5": those are looked
-# up when the figure is drawn, and by then the style is no longer active.
-CYCLE = tuple(
-    rc_params_from_file(STYLE, use_default_template=False)["axes.prop_cycle"].by_key()["color"]
-)
 
 # One meaning, one colour, all through the book.
 OURS = "#0072B2"

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from .style import CYCLE, OURS, TRUTH, styled
+from .scene import sensor_colors, spread
+from .style import OURS, TRUTH, styled
 
 
 def record(time, z, shift):
@@ -23,12 +24,12 @@ def record(time, z, shift):
     """
     with styled(7.0, 3.8) as figure:
         ax, zoom = figure.subplots(1, 2, width_ratios=(3, 2))
-        for n in range(shift.shape[1]):
-            color = CYCLE[n % len(CYCLE)]
+        ends = spread(shift[-1], 0.05 * np.ptp(shift))
+        for n, color in enumerate(sensor_colors(shift.shape[1])):
             ax.plot(time, shift[:, n], color=color)
             ax.annotate(
-                f"{n + 1}", (time[-1], shift[-1, n]), xytext=(4, -4), textcoords="offset points",
-                color=color,
+                f"{n + 1}", (time[-1], shift[-1, n]), (1.04 * time[-1], ends[n]), color=color,
+                va="center", arrowprops={"arrowstyle": "-", "color": color, "lw": 0.8},
             )  # fmt: skip
             zoom.plot(1e3 * time[:50], z[:50, n], ".", color=color, ms=4)
             zoom.plot(1e3 * time[:50], shift[:50, n], color=color)

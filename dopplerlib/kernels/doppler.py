@@ -31,7 +31,8 @@ def doppler_shift(x, y, z, v_x, v_y, v_z, s_x, s_y, s_z, doppler_per_speed):
     return shift
 
 
-def doppler_shift_and_gradient(x, y, z, v_x, v_y, v_z, s_x, s_y, s_z, doppler_per_speed):
+def doppler_shift_and_gradient(x, y, z, v_x, v_y, v_z, s_x, s_y, s_z,
+        doppler_per_speed):
     r"""Doppler shift in Hz and its derivatives by x, y, z, v_x, v_y, v_z (Eqs 6, 7).
 
     .. math::

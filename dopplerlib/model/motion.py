@@ -38,8 +38,8 @@ def constant_velocity(T, sigma_p, noise="common"):
     Examples
     --------
     >>> F, Q = constant_velocity(0.001, 0.4)
-    >>> int(np.linalg.matrix_rank(Q)), int(np.linalg.matrix_rank(constant_velocity(
-    ...     0.001, 0.4, "independent")[1]))
+    >>> _, Q3 = constant_velocity(0.001, 0.4, noise="independent")
+    >>> int(np.linalg.matrix_rank(Q)), int(np.linalg.matrix_rank(Q3))
     (1, 3)
     """
     T = _checks.one_number("T", T, _checks.deviation)

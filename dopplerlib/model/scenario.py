@@ -51,11 +51,11 @@ class Scenario:
     From 0.8 m in front of a ring, straight towards it, for a second:
 
     >>> scenario = Scenario(
-    ...     RadarArray.ring(6, 0.2), x0=[0.8, 0, 0, -0.7, 0, 0], T=0.001, samples=1001,
-    ...     sigma_f=0.4, sigma_p=0.4, P0=0.1 * np.eye(6),
+    ...     RadarArray.ring(6, 0.2), x0=[0.8, 0, 0, -0.7, 0, 0],
+    ...     T=0.001, samples=1001, sigma_f=0.4, sigma_p=0.4, P0=0.1 * np.eye(6),
     ... )
-    >>> [round(float(value), 3) for value in (scenario.time[-1], scenario.truth[-1, 0])]
-    [1.0, 0.1]
+    >>> round(float(scenario.time[-1]), 3), round(float(scenario.truth[-1, 0]), 3)
+    (1.0, 0.1)
     """
 
     array: RadarArray
@@ -70,6 +70,7 @@ class Scenario:
         """Check and freeze the fields."""
         x0 = _checks.finite("x0", self.x0, (6,)).copy()
         P0 = _checks.covariance("P0", self.P0, 6).copy()
+        _checks.instance("array", self.array, RadarArray)
         for name, array, shape in [("x0", x0, (6,)), ("P0", P0, (6, 6))]:
             if array.shape != shape:
                 raise ValueError(f"{name} must have shape {shape}, got {array.shape}")

@@ -44,7 +44,7 @@ def spd(rng, scale):
     return P * np.outer(scale, scale)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def random_cycle():
     """Return a function (rng, sensors, runs, missing) -> Cycle of moderate, ordinary numbers."""
 

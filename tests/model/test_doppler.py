@@ -18,7 +18,7 @@ ROUNDING = 1e-11
 
 @pytest.fixture
 def x():
-    """Forty states a metre or so away from every sensor of all `ARRAYS`."""
+    """Forty states a meter or so away from every sensor of all `ARRAYS`."""
     rng = np.random.default_rng(20)
     x = rng.normal(size=(40, 6))
     x[:, :3] *= (1 + rng.uniform(size=(40, 1))) / np.linalg.norm(x[:, :3], axis=1, keepdims=True)

@@ -13,7 +13,7 @@ NAN, INF = float("nan"), float("inf")
 AXES = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}
 FIRST = {"x": "y", "y": "z", "z": "x"}
 
-# Coordinates of a few tenths of a metre, rounded a few times: 1e-16 each.
+# Coordinates of a few tenths of a meter, rounded a few times: 1e-16 each.
 ROUNDING = 1e-15
 
 
@@ -66,12 +66,12 @@ def test_a_line_is_centred_with_its_ends_at_half_its_length(n, length, axis):
         lambda w: RadarArray.linear(3, 0.2, wavelength=w),
     ],
 )
-def test_one_metre_per_second_shifts_the_echo_by_two_over_the_wavelength(make):
+def test_one_meter_per_second_shifts_the_echo_by_two_over_the_wavelength(make):
     assert make(0.004).doppler_per_speed == 500
     assert make(0.0125).doppler_per_speed == 160
 
 
-def test_the_default_wavelength_gives_160_hz_per_metre_per_second():
+def test_the_default_wavelength_gives_160_hz_per_meter_per_second():
     for array in (RadarArray([[0, 0, 0]]), RadarArray.ring(3, 0.2), RadarArray.linear(3, 0.2)):
         assert array.doppler_per_speed == 160
 

@@ -132,6 +132,9 @@ def test_every_shape_of_array_can_be_described(load, table, array):
         ("sigma_p =", "gate = 'upper'\nsigma_p =", r"\[tracker\] must have nothing but .*got gate"),
         # a wrong value
         ("T = 0.001", 'T = "fast"', "T must be an array of real numbers, got 'fast'"),
+        ("T = 0.001", 'T = "0.001"', "T must be an array of real numbers, got '0.001'"),
+        ("T = 0.001", "T = true", "T must be an array of real numbers, got True"),
+        ("T = 0.001", "T = 2020-01-01", "T must be an array of real numbers, got"),
         ("T = 0.001", "T = -0.001", "T must be positive, got -0.001"),
         ("T = 0.001", "T = nan", "T must be finite, got nan"),
         ("T = 0.001", "T = [0.001, 0.002]", "T must be one number"),
@@ -179,6 +182,7 @@ def test_a_file_that_does_not_exist_is_said_not_to_exist(tmp_path):
         ("sigma_f", [0.4, 0.4], "sigma_f must be one number"),
         ("sigma_p", 0.0, "sigma_p must be positive, got 0"),
         ("samples", True, "samples must be a whole number"),
+        ("array", [[0, 0, 0]], r"array must be a RadarArray, got \[\[0, 0, 0\]\]"),
     ],
 )
 def test_a_scenario_made_by_hand_is_held_to_the_same(scenario, field, value, message):

@@ -51,6 +51,14 @@ def test_a_run_is_the_same_among_five_and_among_fifty(scenario):
     np.testing.assert_array_equal(few, many[:5])
 
 
+def test_a_run_begins_the_same_however_long_it_is(scenario):
+    """Runs do not share one stream: a run does not move when those before it grow longer."""
+    short = replace(scenario, samples=100)
+    few = simulate(short, 5, rng=np.random.default_rng(1))[1]
+    many = simulate(scenario, 5, rng=np.random.default_rng(1))[1]
+    np.testing.assert_array_equal(few, many[:, :100])
+
+
 def test_another_seed_and_a_second_call_give_other_noise(scenario):
     rng = np.random.default_rng(1)
     first, second = simulate(scenario, 2, rng=rng)[1], simulate(scenario, 2, rng=rng)[1]
@@ -64,12 +72,14 @@ def test_noise_has_mean_zero_at_every_sensor(noise):
     assert np.abs(score).max() < bound(score.size)
 
 
-def test_noise_has_the_variance_of_the_scenario_at_every_sensor(noise):
-    n = RUNS * noise.shape[1]
-    total = np.sum(noise**2, axis=(0, 1))  # chi-square distributed
+def test_noise_has_the_variance_of_the_scenario_at_every_sensor_and_over_all(noise):
+    """Over all, a deviation that is off by 1 % would show."""
+    each = np.sum(noise**2, axis=(0, 1))  # chi-square distributed
+    total = np.append(each, each.sum())
+    dof = np.append(np.full(each.size, RUNS * noise.shape[1]), noise.size)
     tail = FALSE_ALARM / 2 / total.size
-    assert (chi2.ppf(tail, n) < total).all()
-    assert (total < chi2.isf(tail, n)).all()
+    assert (chi2.ppf(tail, dof) < total).all()
+    assert (total < chi2.isf(tail, dof)).all()
 
 
 def test_noise_is_gaussian(noise):

@@ -191,7 +191,7 @@ def test_a_start_and_a_covariance_of_ones_own_are_used():
     expected = z[:, 0] - doppler_shift(start, s.array)
     np.testing.assert_allclose(result.track.innovation[:, 0], expected, atol=1e-10)
     # Certain of its start, the filter moves from it by what one interval of noise allows: 0.4 mm/s
-    # a deviation. Unsure, it would be off by decimetres.
+    # a deviation. Unsure, it would be off by decimeters.
     np.testing.assert_allclose(result.track.x[:, 0], start, atol=2.5e-3)
     assert np.trace(result.track.P[0, 0]) < 1e-6
     unsure = paper.figure6(RUNS, rng=np.random.default_rng(5))
@@ -231,8 +231,8 @@ def test_the_published_final_errors_are_ones_that_our_runs_give(runs, published)
     assert ((low < published.error[-1]) & (published.error[-1] < high)).all()
 
 
-def test_most_runs_come_within_a_centimetre_in_a_second(runs):
-    """The text: sub-centimetre accuracy in the distance x."""
+def test_most_runs_come_within_a_centimeter_in_a_second(runs):
+    """The text: sub-centimeter accuracy in the distance x."""
     assert np.median(runs.error[:, -1, 0]) < 0.01
 
 

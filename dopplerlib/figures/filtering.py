@@ -1,0 +1,204 @@
+"""What a Kalman filter believes, and how far it can be believed."""
+
+import numpy as np
+
+from .style import BOUND, OURS, TRUTH, styled
+
+# For variants of one filter: colors of the style file, each with its own line for print in gray.
+_LOOKS = (("#0072B2", "-"), ("#D55E00", "--"), ("#009E73", "-."), ("#CC79A7", ":"))
+
+
+def bands(time, truth, x, deviation, measured=None):
+    """Draw position and velocity on one axis: truth, estimate and two standard deviations.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    truth : ndarray, shape (K, 2)
+        True position in m and velocity in m/s.
+    x : ndarray, shape (K, 2)
+        Estimates.
+    deviation : ndarray, shape (K, 2)
+        Standard deviations of `x` as the filter believes them.
+    measured : ndarray, shape (K,), optional
+        Velocities that the measurements alone give, in m/s.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.4) as figure:
+        for i, ax in enumerate(figure.subplots(1, 2)):
+            if i == 1 and measured is not None:
+                ax.plot(time, measured, ".", color=BOUND, ms=2.5, label="measured alone")
+                ax.set_ylim(top=measured.max() + 0.5 * np.ptp(measured))  # room for the legend
+            ax.fill_between(
+                time, *(x[:, i] + sign * 2 * deviation[:, i] for sign in (-1, 1)),
+                color=OURS, alpha=0.25, lw=0, label="± 2 standard deviations",
+            )  # fmt: skip
+            ax.plot(time, x[:, i], color=OURS, label="estimate")
+            ax.plot(time, truth[:, i], color=TRUTH, ls="--", label="truth")
+            ax.set(xlabel="time in s", ylabel=("position in m", "velocity in m/s")[i])
+            ax.legend(loc=("lower left", "upper right")[i])
+        return figure
+
+
+def tangent(step, shift, line, sigma_f):
+    """Draw the Doppler shift along a line through the state space, and its tangent.
+
+    Parameters
+    ----------
+    step : ndarray, shape (M,)
+        Distance from the point of tangency, in standard deviations of the prior.
+    shift : ndarray, shape (M,)
+        Doppler shift in Hz.
+    line : ndarray, shape (M,)
+        The linear approximation of `shift` in Hz.
+    sigma_f : float
+        Standard deviation of a measurement in Hz.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.2) as figure:
+        left, right = figure.subplots(1, 2)
+        left.plot(step, shift, color=TRUTH, label="Doppler shift, Eq 6")
+        left.plot(step, line, color=OURS, ls="--", label="linearized, Eq 7")
+        left.set(ylabel="Hz")
+        right.plot(step, np.abs(shift - line), color=OURS, label="their difference")
+        right.axhline(sigma_f, color=BOUND, ls=":", label="noise, one standard deviation")
+        right.set(yscale="log", ylabel="Hz", ylim=(sigma_f / 100, None))
+        for ax in (left, right):
+            ax.set_xlabel("standard deviations of the prior")
+            ax.legend()
+        return figure
+
+
+def second_order(time, ratios, ylabel):
+    """Draw what linearization neglects, over time, for several filters.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s; it is drawn on a logarithmic axis.
+    ratios : dict of str to ndarray, shape (K,)
+        For each label, the neglected term as a multiple of the noise.
+    ylabel : str
+        Label of the vertical axis.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.0) as figure:
+        ax = figure.subplots()
+        for (label, ratio), (color, ls) in zip(ratios.items(), _LOOKS, strict=False):
+            ax.plot(time, ratio, color=color, ls=ls, label=label)
+        ax.axhline(1, color=BOUND, ls=":", label="as large as the noise")
+        ax.set(xscale="log", yscale="log", xlabel="time in s", ylabel=ylabel)
+        ax.legend()
+        return figure
+
+
+def consistency(time, averages, intervals, titles):
+    """Draw average NEES and NIS of many runs, for several targets side by side.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    averages : list of dict of str to tuple of two ndarray, shape (K,)
+        For each target, what each filter reached: averages of NEES and of NIS over the runs.
+    intervals : tuple of two pairs of float
+        Where the averages of a consistent filter lie, for NEES and for NIS.
+    titles : sequence of str
+        Names of the targets.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 4.6) as figure:
+        axes = figure.subplots(2, len(averages), sharex=True, sharey="row", squeeze=False)
+        for column, (filters, title) in enumerate(zip(averages, titles, strict=True)):
+            axes[0, column].set_title(title)
+            for row, interval in enumerate(intervals):
+                ax = axes[row, column]
+                ax.axhspan(*interval, color=BOUND, alpha=0.35, lw=0, label="consistent")
+                for (label, pair), (color, ls) in zip(filters.items(), _LOOKS, strict=False):
+                    ax.plot(time, pair[row], color=color, ls=ls, lw=1.2, label=label)
+                ax.set_yscale("log")
+            axes[1, column].set_xlabel("time in s")
+        axes[0, 0].set_ylabel("average NEES")
+        axes[1, 0].set_ylabel("average NIS")
+        axes[0, 0].legend()
+        return figure
+
+
+def gap(time, deviations, gaps):
+    """Draw standard deviations over time for several records, and where sensors are missing.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    deviations : dict of str to ndarray, shape (K, 6)
+        For each label, the standard deviations of the state.
+    gaps : sequence of tuple (float, float)
+        When sensors were missing, in s.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.4) as figure:
+        axes = figure.subplots(1, 2)
+        for ax, i, name in zip(axes, (0, 3), ("$x$ in mm", "$v_x$ in mm/s"), strict=True):
+            for start, end in gaps:
+                ax.axvspan(start, end, color=BOUND, alpha=0.2, lw=0)
+            for (label, deviation), (color, ls) in zip(deviations.items(), _LOOKS, strict=False):
+                ax.plot(time, 1e3 * deviation[:, i], color=color, ls=ls, label=label)
+            ax.set(xlabel="time in s", ylabel=f"standard deviation of {name}", ylim=(0, None))
+        axes[0].legend(loc="lower left")
+        return figure
+
+
+def covariance_health(step, results):
+    """Draw how symmetric and how positive a computed covariance stays over a long run.
+
+    Parameters
+    ----------
+    step : ndarray, shape (M,)
+        Numbers of the steps at which the matrices were looked at.
+    results : dict of str to dict of str to ndarray, shape (up to M, 6, 6)
+        For each title of a column and each label, covariances scaled to a unit diagonal. A series
+        that is shorter than the others of its column ended because a variance became negative.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 4.8) as figure:
+        axes = figure.subplots(2, len(results), sharex="col", sharey="row", squeeze=False)
+        for (top, bottom), (title, series) in zip(axes.T, results.items(), strict=True):
+            top.set_title(title)
+            longest = max(map(len, series.values()))
+            for (label, C), (color, ls) in zip(series.items(), _LOOKS, strict=False):
+                across = np.swapaxes(C, -1, -2)
+                asymmetry = np.abs(C - across).max(axis=(-2, -1))
+                least = np.linalg.eigvalsh((C + across) / 2)[:, 0]
+                at = step[: len(C)] / 1000
+                style = {"color": color, "ls": ls, "lw": 1.2}
+                top.plot(at, np.where(asymmetry > 0, asymmetry, np.nan), **style)
+                bottom.plot(at, np.where(least > 0, least, np.nan), label=label, **style)
+                if len(C) < longest:
+                    top.plot(at[-1], asymmetry[-1], "x", color=color, mew=2)
+                    bottom.plot(at[-1], np.abs(least[-1]), "x", color=color, mew=2)
+            top.set(yscale="log", ylim=(1e-16, 30))
+            bottom.set(yscale="log", ylim=(5e-8, 3), xlabel="step in thousands")
+        axes[0, 0].set_ylabel("asymmetry")
+        axes[1, 0].set_ylabel("smallest eigenvalue")
+        axes[1, 0].legend(loc="upper right", ncols=2)
+        return figure
