@@ -275,7 +275,8 @@ def _lowest(states, costs, taken, lower, upper):
     """
     best = -1
     for m in range(costs.size):
-        if taken[m]:
+        # Not a number: a grid point that is a sensor.
+        if taken[m] or np.isnan(costs[m]):
             continue
         if best < 0:
             best = m
@@ -310,7 +311,7 @@ def _walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cen
         for _ in range(STEPS):
             y = path[here]
             _normal_equations(y, still_t, still_z, still_w, positions, c, H, g)
-            if _weakest(H, lower, upper, before, held, L, e) > WEAK:
+            if not _weakest(H, lower, upper, before, held, L, e) <= WEAK:
                 break
             reach = _distance(y, centre) + radius
             along = 0.0
@@ -640,6 +641,8 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
             )
         taken[:] = False
         best = _lowest(states[:count], costs[:count], taken, lower, upper)
+        if best < 0:
+            continue
         if moving:
             first, last = _walk(
                 states[best], times, data, w, mean_t, mean_z, mean_w, positions, c, lower, upper,
