@@ -21,15 +21,18 @@ from numba import njit
 
 from ..kernels import doppler as kernel
 
+# A Python integer as an argument would make numba compile a function for this very value.
+ALL, VELOCITY = np.int64(0), np.int64(3)  # the first component of a step
+
 STARTS = 6  # local minima of the grid that are refined; three or four are usual
-ITERATIONS = 200  # of one refinement; ten are usual
+ITERATIONS = np.int64(200)  # of one refinement; ten are usual
 DAMPING = 1e-6  # of the first step, relative to the diagonal of J'J
 TOLERANCE = 1e-12  # stop when a step promises less, relative to the cost
 NOISE = 1e-15  # relative rounding error of a predicted measurement
 WEAK = 1e-5  # smallest eigenvalue of the scaled information below which `_walk` sets out
 STRIDE = 0.15  # of a step of the walk, relative to the distance from the array
 STEPS = 25  # of the walk, each way: enough for a range that grows thirtyfold
-CORRECTIONS = 3  # iterations that bring a state next to the valley floor back to it
+CORRECTIONS = np.int64(3)  # iterations that bring a state next to the valley floor back to it
 PULL = 1e-12  # weight of the box's centre in `_settle`, relative to the information
 SETTLED = 1e-6  # last step of `_settle`, relative to the box; rounding allows some 1e-9
 DISTINCT = 1e-3  # two states differ if a component does by this share of the box
@@ -180,7 +183,7 @@ def _refine(x, t, z, w, positions, c, lower, upper, size, iterations):
     for _ in range(iterations):
         for i in range(6):
             damping[i] = factor * H[i, i]
-        _boxed_step(H, g, damping, x, lower, upper, 0, held, L, d)
+        _boxed_step(H, g, damping, x, lower, upper, ALL, held, L, d)
         promise = 0.0
         for i in range(6):
             promise -= 2 * g[i] * d[i]
@@ -189,7 +192,7 @@ def _refine(x, t, z, w, positions, c, lower, upper, size, iterations):
         _move(x, d, lower, upper, new)
         cost_new = _normal_equations(new, t, z, w, positions, c, H_new, g_new)
         if cost - cost_new < 0.9 * promise:
-            _boxed_step(H_new, g_new, none, new, lower, upper, 3, held, L, d)
+            _boxed_step(H_new, g_new, none, new, lower, upper, VELOCITY, held, L, d)
             _move(new, d, lower, upper, new)
             cost_new = _normal_equations(new, t, z, w, positions, c, H_new, g_new)
 
@@ -364,7 +367,7 @@ def _settle(x, t, z, w, positions, c, lower, upper):
                 pull[i] = prior[i] * ((lower[i] + upper[i]) / 2 - new[i])
                 g[i] -= pull[i]
                 towards[i] = 0.0
-            _boxed_step(H, g, prior, new, lower, upper, 0, held, L, d)
+            _boxed_step(H, g, prior, new, lower, upper, ALL, held, L, d)
             _solve(H, prior, pull, held, L, towards)
             length, along, square = 0.0, 0.0, 0.0
             for i in range(6):

@@ -50,7 +50,7 @@ def test_no_ring_sees_the_direction(states):
 
 def test_the_direction_is_the_derivative_of_the_family(states):
     x = states[np.abs(states[:, 0]) > 0.3]  # nearer to the plane of the ring it bends sharply
-    h = 1e-4
+    h = 1e-5
     difference = (ring_family(x, RADIUS, 1 + h) - ring_family(x, RADIUS, 1 - h)) / (2 * h)
     # The error of a central difference is of the order h^2 times a third derivative.
     size = np.linalg.norm(difference, axis=1, keepdims=True)
