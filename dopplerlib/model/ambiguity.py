@@ -14,7 +14,7 @@ def ring_family(x, radius, t):
         States [x, y, z, v_x, v_y, v_z] in m and m/s, with x not zero.
     radius : float
         Radius in m of the ring: a circle about the origin in the plane x = 0.
-    t : array_like, broadcast to the leading axes of `x`
+    t : array_like, shape (...)
         Place in the family, between the limits of `ring_family_limits`; 1 is `x` itself.
 
     Returns
@@ -74,6 +74,17 @@ def ring_family_limits(x, radius):
     ------
     ValueError
         If an argument has the wrong shape or is not finite, or x is zero.
+
+    Notes
+    -----
+    Where |p|^2 t^2 + r^2 (t^2 - 1) = (y^2 + z^2) t^4, so that nothing is left for x^2; see
+    `dopplerlib.derive.ring`.
+
+    Examples
+    --------
+    >>> low, high = ring_family_limits([0.8, 0.1, 0.1, -0.7, 0, 0], 0.2)
+    >>> round(float(low), 3), round(float(high), 3)
+    (0.239, 5.911)
     """
     x, radius = _state(x, radius)
     A = np.sum(x[..., :3] ** 2, axis=-1) + radius**2
@@ -106,7 +117,16 @@ def ring_family_direction(x, radius):
 
     Notes
     -----
-    The Doppler Jacobian of every ring of this radius times this vector is zero.
+    The Doppler Jacobian of every ring of this radius times this vector is zero;
+    `dopplerlib.derive.ring` has the proof.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray, doppler_jacobian
+    >>> x = [0.8, 0.1, 0.1, -0.7, 0, 0]
+    >>> H = doppler_jacobian(x, RadarArray.ring(6, 0.2))
+    >>> bool((abs(H @ ring_family_direction(x, 0.2)) < 1e-10).all())
+    True
     """
     x, radius = _state(x, radius)
     p, v = x[..., :3], x[..., 3:]
