@@ -4,7 +4,7 @@ Every ``prove_...`` function returns an expression that SymPy has simplified; th
 if it is zero. The numbers belong to `dopplerlib.model.ambiguity`.
 
 The ring theorem. Let all sensors stand on one circle of radius r about the origin in the plane
-x = 0. Their Doppler shifts depend on a state through A = |p|^2 + r^2, y, z, w = p.v, v_y and v_z
+x = 0. Their Doppler shifts depend on a state through A = p.p + r^2, y, z, w = p.v, v_y and v_z
 only, and multiplying A, y, z by t^2 and w, v_y, v_z by t changes none of them, wherever on the
 circle a sensor stands. So however many sensors there are, the states of such a family look alike,
 and a Fisher information of a constant state has rank five at most.
@@ -28,7 +28,7 @@ def sensor_on_circle():
 
 
 def invariants(state=STATE):
-    """Return what a ring sees of a state: |p|^2 + r^2, y, z, p.v, v_y and v_z."""
+    """Return what a ring sees of a state: p.p + r^2, y, z, p.v, v_y and v_z."""
     p, v = sp.Matrix(state[:3]), sp.Matrix(state[3:])
     return sp.Matrix([p.dot(p) + RADIUS**2, p[1], p[2], p.dot(v), v[1], v[2]])
 
@@ -36,8 +36,8 @@ def invariants(state=STATE):
 def shift_on_circle():
     """Return the Doppler shift of a sensor on the circle as a function of `INVARIANTS`.
 
-    Of the sensor s, |s - p|^2 = A - 2 s.p and (s - p).v = s.v - w, and since s has no x component
-    s.p and s.v hold y, z, v_y and v_z only.
+    A sensor s at distance r from the origin has (s - p).(s - p) = A - 2 s.p and (s - p).v = s.v - w,
+    and since it has no x component s.p and s.v hold y, z, v_y and v_z only.
     """
     A, y, z, w, v_y, v_z = INVARIANTS
     s = sensor_on_circle()

@@ -30,8 +30,8 @@ def ring_family(x, radius, t):
 
     Notes
     -----
-    |p|^2 + r^2, y and z are multiplied by t^2, and p.v, v_y and v_z by t; `dopplerlib.derive.ring`
-    has the proof.
+    The square of p plus that of the radius, y and z are multiplied by t^2; p.v, v_y and v_z by t.
+    `dopplerlib.derive.ring` has the proof.
 
     Examples
     --------
@@ -77,8 +77,8 @@ def ring_family_limits(x, radius):
 
     Notes
     -----
-    Where |p|^2 t^2 + r^2 (t^2 - 1) = (y^2 + z^2) t^4, so that nothing is left for x^2; see
-    `dopplerlib.derive.ring`.
+    With the radius r, the ends are where t^2 (x^2 + y^2 + z^2 + r^2) - r^2 - t^4 (y^2 + z^2), which
+    is the square of the first component along the family, is zero.
 
     Examples
     --------
