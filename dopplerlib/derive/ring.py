@@ -36,8 +36,8 @@ def invariants(state=STATE):
 def shift_on_circle():
     """Return the Doppler shift of a sensor on the circle as a function of `INVARIANTS`.
 
-    A sensor s at distance r from the origin has (s - p).(s - p) = A - 2 s.p and (s - p).v = s.v - w,
-    and since it has no x component s.p and s.v hold y, z, v_y and v_z only.
+    A sensor s at distance r from the origin has (s - p).(s - p) = A - 2 s.p and
+    (s - p).v = s.v - w, and without an x component s.p and s.v hold y, z, v_y and v_z only.
     """
     A, y, z, w, v_y, v_z = INVARIANTS
     s = sensor_on_circle()

@@ -38,10 +38,6 @@ SETTLED = 1e-6  # last step of `_settle`, relative to the box; rounding allows s
 DISTINCT = 1e-3  # two states differ if a component does by this share of the box
 TIE = 1e-9  # relative difference between equal costs
 
-# numba's cache watches the file of the compiled function only. As a constant inside it, the
-# fingerprint of the kernels makes a new kernel a new function.
-_FINGERPRINT = hashlib.sha256(Path(kernel.__file__).read_bytes()).hexdigest()
-
 # Without wrappers for callers from outside, which take a third of the time to compile.
 _compiled = njit(nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 _shift_and_gradient = njit(forceinline=True, error_model="numpy")(kernel.doppler_shift_and_gradient)
@@ -570,8 +566,8 @@ def _summarize(times, z, w, window, mean_t, mean_z, mean_w, slope, spread):
     return seen
 
 
-@njit(nogil=True, error_model="numpy", cache=True)
-def search(z, deviations, times, window, positions, c, lower, upper, grid, shape, centre, radius,
+@_compiled
+def _search(z, deviations, times, window, positions, c, lower, upper, grid, shape, centre, radius,
            singular, needed, x, information, cost, converged, second_x, second_cost):  # fmt: skip
     """Fill the outputs, one row a run.
 
@@ -579,7 +575,6 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
     for all samples. The first `window` samples are those of the grid and of the walk.
     A run in which fewer than `needed` values (after the mean) are there is left NaN.
     """
-    _FINGERPRINT  # noqa: B018  (see there)
     runs, samples, sensors = z.shape
     moving = times.size > 1
     points = len(grid)
@@ -685,3 +680,21 @@ def search(z, deviations, times, window, positions, c, lower, upper, grid, shape
                 _copy(states[m], second_x[run])
                 second_cost[run] = scatter + costs[m]
                 break
+
+
+def _cached(fingerprint):
+    """Return `_search`, compiled once for all processes.
+
+    numba's cache watches this file only, and the variables of an enclosing function: as one of
+    them, the fingerprint of the kernels makes a new kernel a new function.
+    """
+
+    @njit(nogil=True, error_model="numpy", cache=True)
+    def search(*arguments):
+        fingerprint  # noqa: B018
+        _search(*arguments)
+
+    return search
+
+
+search = _cached(hashlib.sha256(Path(kernel.__file__).read_bytes()).hexdigest())
