@@ -213,6 +213,18 @@ def _refine(x, t, z, w, positions, c, lower, upper, size, iterations):
 
 
 @_compiled
+def _grow(x, t, z, w, window, positions, c, lower, upper, size):
+    """Refine x on the first `window` samples, then on four times as many, up to nearly all.
+
+    Over a long record a small error of the velocity is a large one of the last positions, and the
+    cost has many minima; a short record leads towards the right one.
+    """
+    while window < t.size:
+        _refine(x, t[:window], z[:window], w[:window], positions, c, lower, upper, size, ITERATIONS)
+        window *= 4
+
+
+@_compiled
 def _weakest(H, lower, upper, start, held, L, e):
     """Find the direction e that H determines least; return its eigenvalue, H scaled to ones.
 
@@ -588,7 +600,7 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
     mean_t, mean_z, mean_w = np.zeros(1), np.empty((1, sensors)), np.empty((1, sensors))
     chosen = np.empty(STARTS, np.int64)
     path, path_cost = np.empty((2 * STEPS + 1, 6)), np.empty(2 * STEPS + 1)
-    states, costs = np.empty((STARTS + 2 * STEPS + 1, 6)), np.empty(STARTS + 2 * STEPS + 1)
+    states, costs = np.empty((2 * STARTS + 2 * STEPS + 1, 6)), np.empty(2 * STARTS + 2 * STEPS + 1)
     arrived, taken = np.empty(costs.size, np.bool_), np.empty(costs.size, np.bool_)
     H, g, L = np.empty((6, 6)), np.empty(6), np.empty((6, 6))
     held, e, ones = np.empty(6, np.bool_), np.empty(6), np.ones(6)
@@ -634,6 +646,15 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
             e[3:] = 0.0
             states[m, :3] = 0.0
             _move(states[m], e, lower, upper, states[m])
+        if window < t_fit.size:
+            for m in range(count):
+                _copy(states[m], states[count + m])
+                _grow(
+                    states[count + m], t_fit, z_fit, w_fit, window, positions, c, lower, upper,
+                    size,
+                )  # fmt: skip
+            count *= 2
+        for m in range(count):
             costs[m], arrived[m] = _refine(
                 states[m], t_fit, z_fit, w_fit, positions, c, lower, upper, size, ITERATIONS
             )
