@@ -1,0 +1,57 @@
+"""How good an estimate can be at best: the Cramér-Rao lower bound."""
+
+from ..model.information import fisher_information, inverse_information
+
+
+def crlb(x, array, sigma_f, K=1, T=0.001, likelihood="static", *, free=None):
+    """Return the least covariance of an unbiased estimate of the state from K Doppler samples.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 6)
+        True states [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s.
+    array : RadarArray
+        The N sensors.
+    sigma_f : array_like, broadcast to (K, N)
+        Standard deviation of the measurements in Hz.
+    K : int
+        Number of samples.
+    T : float
+        Sampling interval in s.
+    likelihood : {"static", "moving"}
+        Whether the state is constant during the samples, or moves at constant velocity; see
+        `fisher_information`.
+    free : array_like of bool, shape (6,), optional
+        Components that are unknown, such as x, y, v_x, v_y in a plane. The others are known:
+        their variances are zero. All are unknown if None.
+
+    Returns
+    -------
+    ndarray, shape (..., 6, 6)
+        Covariances. Where the information is singular no unbiased estimate exists: the variance
+        of every component that takes part in an unobservable direction is infinite, and its
+        covariances are NaN.
+
+    Raises
+    ------
+    ValueError
+        If an argument is refused by `fisher_information`, or `free` is not six booleans.
+
+    Notes
+    -----
+    The inverse of `fisher_information`; Bar-Shalom, Li and Kirubarajan (2001), Section 2.7. It
+    bounds errors that are small against the curvature of the Doppler shift, and knows neither of
+    a box nor of a second basin.
+
+    Examples
+    --------
+    In a plane a line of five sensors sees all four components; out of it, it does not see on
+    which side the target is:
+
+    >>> from dopplerlib import RadarArray
+    >>> plane = [True, True, False, True, True, False]
+    >>> array, x = RadarArray.linear(5, 0.4), [0.5, 0.2, 0, -1, 0.5, 0]
+    >>> [round(float(crlb(x, array, 0.1, free=f)[2, 2]), 3) for f in (plane, None)]
+    [0.0, inf]
+    """
+    return inverse_information(fisher_information(x, array, sigma_f, K, T, likelihood), free)[0]
