@@ -1,7 +1,7 @@
 """How often `ml_start` finds the global optimum, how fast, and what SciPy needs for the same.
 
 ``python benchmarks/ml_start.py [scenarios [SciPy scenarios]]`` prints Markdown to standard output
-and progress to standard error. With 1000 and 100, the defaults, it takes about an hour.
+and progress to standard error. With 1000 and 60, the defaults, it takes half an hour.
 
 The optimum is the least cost that anybody found: `ml_start`; 300 refinements from random states by
 the compiled Levenberg-Marquardt of the library; and, for the first scenarios, SciPy's
@@ -45,7 +45,7 @@ ROUNDS = 7
 
 def main():
     scenarios = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    scipy_scenarios = int(sys.argv[2]) if len(sys.argv) > 2 else 100
+    scipy_scenarios = int(sys.argv[2]) if len(sys.argv) > 2 else 60
     print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, ")
     print(f"load {', '.join(f'{load:.1f}' for load in os.getloadavg())} at the start.\n")
     print(
