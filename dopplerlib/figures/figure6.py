@@ -15,7 +15,7 @@ def scene(result, published, array, run=0):
     result : Figure6
         Our runs.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
     array : RadarArray
         The sensors.
     run : int
@@ -52,7 +52,7 @@ def errors(result, published, run=0):
     result : Figure6
         Our runs.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
     run : int
         Which run to draw.
 
@@ -79,7 +79,7 @@ def error_bands(result, published):
     result : Figure6
         Our runs.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def nis(result, published, interval, run=0):
     result : Figure6
         Our runs.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
     interval : tuple of float
         Bounds of NIS for a consistent filter.
     run : int
@@ -185,7 +185,7 @@ def skipped_counts(result, published):
     result : Figure6
         Runs with the two-sided gate.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
 
     Returns
     -------

@@ -67,7 +67,7 @@ def iso_doppler_cut(array, x, around):
 
 
 def draw_doppler_curves(ax, time, shifts, names=None):
-    """Draw one Doppler curve for each sensor, labelled at its end."""
+    """Draw one Doppler curve for each sensor, labeled at its end."""
     n = shifts.shape[-1]
     names = [str(i + 1) for i in range(n)] if names is None else names
     height = np.ptp(shifts) or 1.0

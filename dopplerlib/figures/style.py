@@ -1,4 +1,4 @@
-"""What all figures share: the style file, the colours by meaning, and a fresh figure."""
+"""What all figures share: the style file, the colors by meaning, and a fresh figure."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 
 STYLE = Path(__file__).with_name("style.mplstyle")
 
-# One meaning, one colour, all through the book.
+# One meaning, one color, all through the book.
 OURS = "#0072B2"
 PUBLISHED = "#D55E00"
 TRUTH = "#222222"
