@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, styled
+from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, styled
 
 _AXES = ("x", "y", "z")
 
@@ -162,10 +162,10 @@ def nis_averages(results, published_average, interval):
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()
-        for label, result in results.items():
+        for (label, result), (color, ls) in zip(results.items(), VARIANTS, strict=False):
             average = np.sort(result.track.nis.mean(axis=-1))
             share = np.arange(1, len(average) + 1) / len(average)
-            ax.step(average, share, where="post", label=label)
+            ax.step(average, share, where="post", color=color, ls=ls, label=label)
         ax.axvspan(*interval, color=BOUND, alpha=0.25, lw=0, label="95 % if consistent")
         for (label, value), style in zip(published_average.items(), ("-", ":"), strict=False):
             ax.axvline(value, color=TRUTH, ls=style, lw=1.2, label=label)

@@ -134,8 +134,9 @@ def two_sensors(array, x):
             ax.plot(*p, "s", color=TRUTH, ms=7, zorder=5)
             ax.annotate(r"$\mathbf{p}$", p, (13, 6), **LABEL)
             ax.set(title=title, xlabel="x (m)", aspect="equal")
-        arrow(axes[0], sensors.mean(axis=0), -scale * v, SENSOR, r"$\mathbf{u}$", (-8, 8))
-        arrow(axes[1], p, scale * v, TRUTH, r"$\mathbf{v} = -\mathbf{u}$", (34, -2))
+        platform = r"\mathbf{v}_\mathrm{s}"
+        arrow(axes[0], sensors.mean(axis=0), -scale * v, SENSOR, f"${platform}$", (-10, 8))
+        arrow(axes[1], p, scale * v, TRUTH, rf"$\mathbf{{v}} = -{platform}$", (36, -2))
         for s, shift in zip(sensors, doppler_shift(x, array), strict=True):
             toward = (s - p) / np.linalg.norm(s - p)
             closing = scale * (toward @ v) * toward

@@ -14,6 +14,11 @@ TRUTH = "#222222"
 SENSOR = "#009E73"
 BOUND = "#777777"
 
+# Colors of the palette without a meaning, for what a single figure compares.
+ORANGE, PINK = "#E69F00", "#CC79A7"
+# Variants of one filter, each with its own line for print in gray.
+VARIANTS = ((OURS, "-"), (ORANGE, "--"), (PINK, "-."), (TRUTH, ":"))
+
 
 @contextmanager
 def styled(width=7.0, height=4.0):
