@@ -64,9 +64,10 @@ def tangent(step, shift, line, sigma_f):
         left.plot(step, shift, color=TRUTH, label="Doppler shift, Eq 6")
         left.plot(step, line, color=OURS, ls="--", label="linearized, Eq 7")
         left.set(ylabel="Hz")
-        right.plot(step, np.abs(shift - line), color=OURS, label="their difference")
+        missed = np.abs(shift - line)
+        right.plot(step, missed, color=OURS, label="their difference")
         right.axhline(sigma_f, color=BOUND, ls=":", label="noise, one standard deviation")
-        right.set(yscale="log", ylabel="Hz", ylim=(sigma_f / 100, None))
+        right.set(yscale="log", ylabel="Hz", ylim=(sigma_f / 100, 30 * missed.max()))
         for ax, place in ((left, "upper right"), (right, "upper center")):
             ax.set_xlabel("standard deviations of the prior")
             ax.legend(loc=place)
