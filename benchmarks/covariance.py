@@ -21,7 +21,7 @@ from dopplerlib import Scenario, constant_velocity, doppler_shift, ekf
 
 SCENARIO = Path(__file__).parents[1] / "data" / "mittermaier2016" / "scenario.toml"
 CHUNK = 20_000
-CENTRE, AMPLITUDE = np.array([0.6, 0.0, 0.0]), 0.2  # m
+CENTER, AMPLITUDE = np.array([0.6, 0.0, 0.0]), 0.2  # m
 
 FORMS = {
     "P - K H P": lambda P, K, H, S, R: P - K @ H @ P,
@@ -50,7 +50,7 @@ def path(scenario, first, samples):
     """Return true states: harmonic motion along (1, 1, 1), sigma_p its largest acceleration."""
     w = np.sqrt(scenario.sigma_p / AMPLITUDE)
     t = scenario.T * np.arange(first, first + samples)
-    position = CENTRE + AMPLITUDE * np.sin(w * t)[:, None] * np.ones(3)
+    position = CENTER + AMPLITUDE * np.sin(w * t)[:, None] * np.ones(3)
     velocity = AMPLITUDE * w * np.cos(w * t)[:, None] * np.ones(3)
     return np.hstack([position, velocity])
 
@@ -92,8 +92,8 @@ def scaling(Ps):
 def first_broken(Ps):
     """Return the index of the first matrix that is not positive definite, or None.
 
-    Cholesky's factorization decides, after scaling to a unit diagonal: otherwise metres against
-    metres per second would decide.
+    Cholesky's factorization decides, after scaling to a unit diagonal: otherwise meters against
+    meters per second would decide.
     """
     bad = ~(np.diagonal(Ps, axis1=1, axis2=2) > 0).all(axis=1)
     good = int(np.argmax(bad)) if bad.any() else len(Ps)

@@ -2,7 +2,7 @@
 
 Each maker prepares whatever can be prepared outside the timed part and returns a function that
 filters one record z (K, N) and returns x (K, 6) and P (K, 6, 6). Every cycle predicts, then
-updates. All of them get the Doppler shift and its Jacobian below, hand-vectorised, not those of
+updates. All of them get the Doppler shift and its Jacobian below, hand-vectorized, not those of
 `dopplerlib`.
 """
 

@@ -2,6 +2,11 @@
 
 import numpy as np
 
+# Rounding in a covariance, as a share of its largest entry. An update in the form of Joseph leaves
+# an asymmetry of about 1e-12, from one linear-algebra library to another a little more or less; a
+# mistake leaves more than this.
+_ROUNDING = 1e-9
+
 
 def real(name, value):
     """Return `value` as a float array, or raise unless it is made of real numbers.
@@ -164,7 +169,7 @@ def covariance(name, value, n, definite=True):
     array = finite(name, value, (n, n))
     largest = np.abs(array).max(axis=(-2, -1), initial=0.0)
     asymmetry = np.abs(array - array.swapaxes(-1, -2)).max(axis=(-2, -1), initial=0.0)
-    if (asymmetry > 1e-12 * largest).any():
+    if (asymmetry > _ROUNDING * largest).any():
         raise ValueError(
             f"{name} must be symmetric, got a difference of {asymmetry.max():.3g} across "
             "the diagonal"
@@ -176,7 +181,7 @@ def covariance(name, value, n, definite=True):
         except np.linalg.LinAlgError:
             wanted = "positive definite"
     else:
-        if (np.linalg.eigvalsh(array)[..., :1] >= -1e-12 * largest[..., None]).all():
+        if (np.linalg.eigvalsh(array)[..., :1] >= -_ROUNDING * largest[..., None]).all():
             return array
         wanted = "positive semidefinite"
     least = np.linalg.eigvalsh(array)[..., 0].min()

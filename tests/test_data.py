@@ -126,4 +126,4 @@ def test_a_flag_says_whether_an_error_lies_above_the_axis_and_whether_it_is_know
 def test_the_final_errors_of_the_curves_are_those_of_the_checks():
     last = rows(PAPER / "fig6_errors.csv")[-1]
     checks = json.loads((PAPER / "table2.json").read_text())["derived_checks"]
-    assert [float(last[f"e{axis}_cm"]) for axis in "xyz"] == checks["final_abs_error_cm_digitised"]
+    assert [float(last[f"e{axis}_cm"]) for axis in "xyz"] == checks["final_abs_error_cm_digitized"]

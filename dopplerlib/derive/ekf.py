@@ -1,7 +1,7 @@
 """One cycle of the extended Kalman filter for constant velocity and Doppler measurements.
 
 The covariance is kept as its 21 distinct entries, so it is symmetric by construction. R is
-diagonal, so the update of all N sensors is done one sensor at a time: for the *linearised* model
+diagonal, so the update of all N sensors is done one sensor at a time: for the *linearized* model
 this is the same estimate as the update with the N x N innovation covariance (Bierman 1977), for
 any number of sensors and without a matrix inverse. All Jacobians belong to the predicted state.
 """

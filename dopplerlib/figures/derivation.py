@@ -3,10 +3,7 @@
 import numpy as np
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
-from .style import BOUND, OURS, PUBLISHED, TRUTH, styled
-
-# Of the palette of the book, without a meaning elsewhere.
-_ORANGE, _PINK = "#E69F00", "#CC79A7"
+from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, TRUTH, styled
 
 _DOUBLE = 2.0**-53  # relative error of one rounding
 
@@ -71,7 +68,7 @@ def derivative_errors(steps, errors):
         ax = figure.subplots()
         markers = ("o", "s", "^", "D")
         for (label, error), marker, color in zip(
-            errors.items(), markers, (_ORANGE, _PINK, OURS, TRUTH), strict=False
+            errors.items(), markers, (ORANGE, PINK, OURS, TRUTH), strict=False
         ):
             shown = np.maximum(error, _DOUBLE)
             ax.loglog(steps, shown, marker=marker, ms=3.5, lw=1.0, color=color, label=label)
@@ -107,7 +104,7 @@ def position_errors(time, errors):
     with styled(7.0, 3.6) as figure:
         ax = figure.subplots()
         for (label, error), color, style in zip(
-            errors.items(), (OURS, _ORANGE), ("-", "--"), strict=False
+            errors.items(), (OURS, ORANGE), ("-", "--"), strict=False
         ):
             lower, middle, upper = np.quantile(error, [0.025, 0.5, 0.975], axis=0)
             ax.fill_between(time, lower, upper, color=color, alpha=0.2, lw=0)

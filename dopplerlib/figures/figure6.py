@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, styled
+from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, styled
 
 _AXES = ("x", "y", "z")
 
@@ -15,7 +15,7 @@ def scene(result, published, array, run=0):
     result : Figure6
         Our runs.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
     array : RadarArray
         The sensors.
     run : int
@@ -52,7 +52,7 @@ def errors(result, published, run=0):
     result : Figure6
         Our runs.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
     run : int
         Which run to draw.
 
@@ -79,7 +79,7 @@ def error_bands(result, published):
     result : Figure6
         Our runs.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def nis(result, published, interval, run=0):
     result : Figure6
         Our runs.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
     interval : tuple of float
         Bounds of NIS for a consistent filter.
     run : int
@@ -162,10 +162,10 @@ def nis_averages(results, published_average, interval):
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()
-        for label, result in results.items():
+        for (label, result), (color, ls) in zip(results.items(), VARIANTS, strict=False):
             average = np.sort(result.track.nis.mean(axis=-1))
             share = np.arange(1, len(average) + 1) / len(average)
-            ax.step(average, share, where="post", label=label)
+            ax.step(average, share, where="post", color=color, ls=ls, label=label)
         ax.axvspan(*interval, color=BOUND, alpha=0.25, lw=0, label="95 % if consistent")
         for (label, value), style in zip(published_average.items(), ("-", ":"), strict=False):
             ax.axvline(value, color=TRUTH, ls=style, lw=1.2, label=label)
@@ -185,7 +185,7 @@ def skipped_counts(result, published):
     result : Figure6
         Runs with the two-sided gate.
     published : PublishedFigure6
-        The digitised figure.
+        The digitized figure.
 
     Returns
     -------

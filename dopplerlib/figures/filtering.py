@@ -2,10 +2,7 @@
 
 import numpy as np
 
-from .style import BOUND, OURS, TRUTH, styled
-
-# For variants of one filter: colors of the style file, each with its own line for print in gray.
-_LOOKS = (("#0072B2", "-"), ("#D55E00", "--"), ("#009E73", "-."), ("#CC79A7", ":"))
+from .style import BOUND, OURS, TRUTH, VARIANTS, styled
 
 
 def bands(time, truth, x, deviation, measured=None):
@@ -67,12 +64,13 @@ def tangent(step, shift, line, sigma_f):
         left.plot(step, shift, color=TRUTH, label="Doppler shift, Eq 6")
         left.plot(step, line, color=OURS, ls="--", label="linearized, Eq 7")
         left.set(ylabel="Hz")
-        right.plot(step, np.abs(shift - line), color=OURS, label="their difference")
+        missed = np.abs(shift - line)
+        right.plot(step, missed, color=OURS, label="their difference")
         right.axhline(sigma_f, color=BOUND, ls=":", label="noise, one standard deviation")
-        right.set(yscale="log", ylabel="Hz", ylim=(sigma_f / 100, None))
-        for ax in (left, right):
+        right.set(yscale="log", ylabel="Hz", ylim=(sigma_f / 100, 30 * missed.max()))
+        for ax, place in ((left, "upper right"), (right, "upper center")):
             ax.set_xlabel("standard deviations of the prior")
-            ax.legend()
+            ax.legend(loc=place)
         return figure
 
 
@@ -94,7 +92,7 @@ def second_order(time, ratios, ylabel):
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
-        for (label, ratio), (color, ls) in zip(ratios.items(), _LOOKS, strict=False):
+        for (label, ratio), (color, ls) in zip(ratios.items(), VARIANTS, strict=False):
             ax.plot(time, ratio, color=color, ls=ls, label=label)
         ax.axhline(1, color=BOUND, ls=":", label="as large as the noise")
         ax.set(xscale="log", yscale="log", xlabel="time in s", ylabel=ylabel)
@@ -127,7 +125,7 @@ def consistency(time, averages, intervals, titles):
             for row, interval in enumerate(intervals):
                 ax = axes[row, column]
                 ax.axhspan(*interval, color=BOUND, alpha=0.35, lw=0, label="consistent")
-                for (label, pair), (color, ls) in zip(filters.items(), _LOOKS, strict=False):
+                for (label, pair), (color, ls) in zip(filters.items(), VARIANTS, strict=False):
                     ax.plot(time, pair[row], color=color, ls=ls, lw=1.2, label=label)
                 ax.set_yscale("log")
             axes[1, column].set_xlabel("time in s")
@@ -158,7 +156,7 @@ def gap(time, deviations, gaps):
         for ax, i, name in zip(axes, (0, 3), ("$x$ in mm", "$v_x$ in mm/s"), strict=True):
             for start, end in gaps:
                 ax.axvspan(start, end, color=BOUND, alpha=0.2, lw=0)
-            for (label, deviation), (color, ls) in zip(deviations.items(), _LOOKS, strict=False):
+            for (label, deviation), (color, ls) in zip(deviations.items(), VARIANTS, strict=False):
                 ax.plot(time, 1e3 * deviation[:, i], color=color, ls=ls, label=label)
             ax.set(xlabel="time in s", ylabel=f"standard deviation of {name}", ylim=(0, None))
         axes[0].legend(loc="lower left")
@@ -185,7 +183,7 @@ def covariance_health(step, results):
         for (top, bottom), (title, series) in zip(axes.T, results.items(), strict=True):
             top.set_title(title)
             longest = max(map(len, series.values()))
-            for (label, C), (color, ls) in zip(series.items(), _LOOKS, strict=False):
+            for (label, C), (color, ls) in zip(series.items(), VARIANTS, strict=False):
                 across = np.swapaxes(C, -1, -2)
                 asymmetry = np.abs(C - across).max(axis=(-2, -1))
                 least = np.linalg.eigvalsh((C + across) / 2)[:, 0]

@@ -67,7 +67,7 @@ def iso_doppler_cut(array, x, around):
 
 
 def draw_doppler_curves(ax, time, shifts, names=None):
-    """Draw one Doppler curve for each sensor, labelled at its end."""
+    """Draw one Doppler curve for each sensor, labeled at its end."""
     n = shifts.shape[-1]
     names = [str(i + 1) for i in range(n)] if names is None else names
     height = np.ptp(shifts) or 1.0
@@ -134,8 +134,9 @@ def two_sensors(array, x):
             ax.plot(*p, "s", color=TRUTH, ms=7, zorder=5)
             ax.annotate(r"$\mathbf{p}$", p, (13, 6), **LABEL)
             ax.set(title=title, xlabel="x (m)", aspect="equal")
-        arrow(axes[0], sensors.mean(axis=0), -scale * v, SENSOR, r"$\mathbf{u}$", (-8, 8))
-        arrow(axes[1], p, scale * v, TRUTH, r"$\mathbf{v} = -\mathbf{u}$", (34, -2))
+        platform = r"\mathbf{v}_\mathrm{s}"
+        arrow(axes[0], sensors.mean(axis=0), -scale * v, SENSOR, f"${platform}$", (-10, 8))
+        arrow(axes[1], p, scale * v, TRUTH, rf"$\mathbf{{v}} = -{platform}$", (36, -2))
         for s, shift in zip(sensors, doppler_shift(x, array), strict=True):
             toward = (s - p) / np.linalg.norm(s - p)
             closing = scale * (toward @ v) * toward

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-# Sensors in their order, all of the hue that means "sensor": dark to light, and labelled as well.
+# Sensors in their order, all of the hue that means "sensor": dark to light, and labeled as well.
 _SHADES = ("#00382A", "#005B44", "#007A5B", "#009E73", "#45B894", "#7CCDB2")
 LABEL = {"textcoords": "offset points", "ha": "center", "va": "center"}
 HALO = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
@@ -32,7 +32,7 @@ def project(points, azimuth, elevation):
 def spread(values, gap):
     """Return `values` moved apart as little as needed so that no two are closer than `gap`.
 
-    Labels at the ends of neighbouring curves would otherwise cover each other.
+    Labels at the ends of neighboring curves would otherwise cover each other.
     """
     values = np.asarray(values, float)
     order = np.argsort(values, kind="stable")

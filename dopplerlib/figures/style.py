@@ -1,4 +1,4 @@
-"""What all figures share: the style file, the colours by meaning, and a fresh figure."""
+"""What all figures share: the style file, the colors by meaning, and a fresh figure."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -7,12 +7,17 @@ import matplotlib.pyplot as plt
 
 STYLE = Path(__file__).with_name("style.mplstyle")
 
-# One meaning, one colour, all through the book.
+# One meaning, one color, all through the book.
 OURS = "#0072B2"
 PUBLISHED = "#D55E00"
 TRUTH = "#222222"
 SENSOR = "#009E73"
 BOUND = "#777777"
+
+# Colors of the palette without a meaning, for what a single figure compares.
+ORANGE, PINK = "#E69F00", "#CC79A7"
+# Variants of one filter, each with its own line for print in gray.
+VARIANTS = ((OURS, "-"), (ORANGE, "--"), (PINK, "-."), (TRUTH, ":"))
 
 
 @contextmanager

@@ -33,7 +33,7 @@ def doppler_shift(x, array):
 
     Examples
     --------
-    One metre away and approaching at 1 m/s:
+    One meter away and approaching at 1 m/s:
 
     >>> from dopplerlib import RadarArray
     >>> float(doppler_shift([1, 0, 0, -1, 0, 0], RadarArray([[0, 0, 0]]))[0])

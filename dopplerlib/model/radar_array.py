@@ -111,7 +111,7 @@ class RadarArray:
 
     @classmethod
     def linear(cls, n, length, axis="y", wavelength=0.0125):
-        """Return `n` sensors at equal distances on a line through the origin, its centre.
+        """Return `n` sensors at equal distances on a line through the origin, its center.
 
         Parameters
         ----------

@@ -122,7 +122,7 @@ def table2():
 
 
 def published_figure6():
-    """Return the digitised curves of Fig 6.
+    """Return the digitized curves of Fig 6.
 
     Returns
     -------

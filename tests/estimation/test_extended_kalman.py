@@ -316,7 +316,7 @@ def test_gate_refuses_one_in_twenty_of_a_consistent_filter(gate):
     runs = 20_000
     v_x = x0[3] + np.sqrt((F @ P0 @ F.T + Q)[3, 3]) * rng.standard_normal((runs, 1, 1))
     z = H[:, 3] * v_x + SIGMA_F * rng.standard_normal((runs, 1, 3))
-    # Linearised on the axis, the other axes do not enter.
+    # Linearized on the axis, the other axes do not enter.
     track = filtered(z, array, x0, gate=gate, keep=())
     refused = int((~track.updated).sum())
     assert binomtest(refused, runs, 0.05).pvalue > 1e-6

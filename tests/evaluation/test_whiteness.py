@@ -25,7 +25,7 @@ def white():
 
 
 def with_memory(rng, shape, rho):
-    """Return Gaussian records of variance one whose neighbours have the correlation `rho`."""
+    """Return Gaussian records of variance one whose neighbors have the correlation `rho`."""
     x = rng.standard_normal(shape)
     for k in range(1, shape[-2]):
         x[..., k, :] = rho * x[..., k - 1, :] + np.sqrt(1 - rho**2) * x[..., k, :]
@@ -58,9 +58,9 @@ def test_the_statistic_is_the_one_that_ljung_and_box_define():
     """Recomputed term by term, for one component of variance one, from its definition."""
     x = with_memory(np.random.default_rng(22), (30, 1), 0.4)[:, 0]
     result = innovation_whiteness(x[:, None], identity(30, 1), lags=4)
-    centred = [value - sum(x) / 30 for value in x]
+    centered = [value - sum(x) / 30 for value in x]
     r = [
-        sum(centred[k] * centred[k - lag] for k in range(lag, 30)) / sum(c * c for c in centred)
+        sum(centered[k] * centered[k - lag] for k in range(lag, 30)) / sum(c * c for c in centered)
         for lag in (1, 2, 3, 4)
     ]
     statistic = 30 * 32 * sum(r[lag - 1] ** 2 / (30 - lag) for lag in (1, 2, 3, 4))
@@ -89,7 +89,7 @@ def test_the_correlation_at_any_lag_of_innovations_without_memory_is_as_small_as
 
 @pytest.mark.parametrize("rho", [0.3, -0.3])
 def test_memory_is_detected(rho):
-    """Neighbours correlated by 0.3 raise the statistic from 15 by about 3 K 0.3^2 = 108.
+    """Neighbors correlated by 0.3 raise the statistic from 15 by about 3 K 0.3^2 = 108.
 
     Its deviation is then about 20, so that hardly a run stays below 38, the bound at 0.001.
     """

@@ -94,7 +94,7 @@ def test_the_published_curves_have_a_sample_every_millisecond_of_the_scenario(pu
 
 def test_the_published_nis_has_the_average_and_the_share_that_its_file_promises(published, printed):
     checks = printed["derived_checks"]
-    assert round(published.nis.mean(), 4) == checks["nis_mean_digitised"]
+    assert round(published.nis.mean(), 4) == checks["nis_mean_digitized"]
     lower, upper = chi2_interval(6)
     inside = (lower <= published.nis) & (published.nis <= upper)
     assert inside.sum() == checks["nis_inside_count"]
