@@ -7,7 +7,7 @@ One run goes through four steps:
 2. `_refine`: Levenberg-Marquardt in the box from the lowest local minima of the grid.
 3. `_walk`: a line of sight says little about range, so along one direction the cost may have
    several minima close together; follow that direction both ways and refine what is found.
-4. `_settle`: where the likelihood has no unique maximum, take the one nearest to the centre of
+4. `_settle`: where the likelihood has no unique maximum, take the one nearest to the center of
    the box, so that the answer does not depend on where a search stopped.
 
 Costs are chi-square: sums of squared residuals over their standard deviations.
@@ -33,7 +33,7 @@ WEAK = 1e-5  # smallest eigenvalue of the scaled information below which `_walk`
 STRIDE = 0.15  # of a step of the walk, relative to the distance from the array
 STEPS = 25  # of the walk, each way: enough for a range that grows thirtyfold
 CORRECTIONS = np.int64(3)  # iterations that bring a state next to the valley floor back to it
-PULL = 1e-12  # weight of the box's centre in `_settle`, relative to the information
+PULL = 1e-12  # weight of the box's center in `_settle`, relative to the information
 SETTLED = 1e-6  # last step of `_settle`, relative to the box; rounding allows some 1e-9
 DISTINCT = 1e-3  # two states differ if a component does by this share of the box
 TIE = 1e-9  # relative difference between equal costs
@@ -264,8 +264,8 @@ def _weakest(H, lower, upper, start, held, L, e):
 
 
 @_compiled
-def _distance(p, centre):
-    return np.sqrt((p[0] - centre[0]) ** 2 + (p[1] - centre[1]) ** 2 + (p[2] - centre[2]) ** 2)
+def _distance(p, center):
+    return np.sqrt((p[0] - center[0]) ** 2 + (p[1] - center[1]) ** 2 + (p[2] - center[2]) ** 2)
 
 
 @_compiled
@@ -303,7 +303,7 @@ def _lowest(states, costs, taken, lower, upper):
 
 
 @_compiled
-def _walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, centre, radius,
+def _walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, center, radius,
           path, cost):  # fmt: skip
     """Follow the weakest direction of x both ways; return the range of `path` that was filled.
 
@@ -317,14 +317,14 @@ def _walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cen
     first, last = STEPS, STEPS
     for way in (-1, 1):
         for i in range(6):
-            before[i] = way * (x[i] - centre[i]) if i < 3 else 0.0
+            before[i] = way * (x[i] - center[i]) if i < 3 else 0.0
         here = STEPS
         for _ in range(STEPS):
             y = path[here]
             _normal_equations(y, still_t, still_z, still_w, positions, c, H, g)
             if not _weakest(H, lower, upper, before, held, L, e) <= WEAK:
                 break
-            reach = _distance(y, centre) + radius
+            reach = _distance(y, center) + radius
             along = 0.0
             length = 0.0
             for i in range(3):
@@ -349,7 +349,7 @@ def _walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cen
 
 @_compiled
 def _settle(x, t, z, w, positions, c, lower, upper):
-    """Move x among equally likely states to the one nearest to the centre of the box.
+    """Move x among equally likely states to the one nearest to the center of the box.
 
     Newton's method with a vanishing prior: it pulls only where the data say nothing. Short steps
     are for those few sets of equal states that bend sharply. If the cost would rise x stays: then
@@ -508,10 +508,10 @@ def _scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
 
 @_compiled
 def _lowest_minima(score, shape, low, spare, chosen):
-    """Write the lowest points that no neighbour is below to `chosen`; return how many."""
+    """Write the lowest points that no neighbor is below to `chosen`; return how many."""
     _copy(score, low)
     inner = score.size
-    for n in shape:  # the minimum of three neighbours along one axis after the other
+    for n in shape:  # the minimum of three neighbors along one axis after the other
         inner //= n
         low, spare = spare, low
         for i in range(score.size // inner):
@@ -579,7 +579,7 @@ def _summarize(times, z, w, window, mean_t, mean_z, mean_w, slope, spread):
 
 
 @_compiled
-def _search(z, deviations, times, window, positions, c, lower, upper, grid, shape, centre, radius,
+def _search(z, deviations, times, window, positions, c, lower, upper, grid, shape, center, radius,
            singular, needed, x, information, cost, converged, second_x, second_cost):  # fmt: skip
     """Fill the outputs, one row a run.
 
@@ -665,7 +665,7 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
         if moving:
             first, last = _walk(
                 states[best], times, data, w, mean_t, mean_z, mean_w, positions, c, lower, upper,
-                centre, radius, path, path_cost,
+                center, radius, path, path_cost,
             )  # fmt: skip
             for m in range(first, last + 1):
                 if (

@@ -39,7 +39,7 @@ class Start:
     identifiable : ndarray of bool, shape (...)
         Whether the information at the estimate is regular. If not, other states in the box
         explain the measurements just as well (to first order), and `x` is the one of them nearest
-        to the centre of the box.
+        to the center of the box.
     converged : ndarray of bool, shape (...)
         Whether the search ended in an optimum to rounding.
     second_x : ndarray, shape (..., 6)
@@ -135,15 +135,15 @@ def ml_start(z, array, sigma_f, T, box, likelihood="moving", *, at="first", work
             f"({likelihood} likelihood) for {needed}; equal bounds in box fix a component"
         )
     times = T * np.arange(samples) if moving else np.zeros(1)
-    centre = array.positions.mean(axis=0)
-    radius = np.sqrt(np.sum((array.positions - centre) ** 2, axis=1).mean())
+    center = array.positions.mean(axis=0)
+    radius = np.sqrt(np.sum((array.positions - center) ** 2, axis=1).mean())
     radius = radius if radius > 0 else array.wavelength
     speed = np.linalg.norm(np.maximum(np.abs(lower[3:]), np.abs(upper[3:])))
     window = samples
     if speed * T * samples > _WINDOW * radius:
         window = max(2, int(_WINDOW * radius / (speed * T)))
     window = min(window, samples)
-    grid, shape = _grid(lower, upper, centre, radius)
+    grid, shape = _grid(lower, upper, center, radius)
     z = np.ascontiguousarray(z).reshape(runs, samples, sensors)
     x, second_x = np.empty((runs, 6)), np.empty((runs, 6))
     information = np.empty((runs, 6, 6))
@@ -156,7 +156,7 @@ def ml_start(z, array, sigma_f, T, box, likelihood="moving", *, at="first", work
     def part(rows):
         search(
             z[rows], deviations, times, window, array.positions, array.doppler_per_speed,
-            lower, upper, grid, shape, centre, radius, SINGULAR, max(needed, 1), x[rows],
+            lower, upper, grid, shape, center, radius, SINGULAR, max(needed, 1), x[rows],
             information[rows], cost[rows], converged[rows], second_x[rows], second_cost[rows],
         )  # fmt: skip
 
@@ -204,7 +204,7 @@ def _box(box):
     return lower.copy(), upper.copy()
 
 
-def _grid(lower, upper, centre, radius):
+def _grid(lower, upper, center, radius):
     """Return positions in the box, shape (G, 3), denser near the array, and their grid's shape.
 
     Steps are even in asinh(distance / radius): about even within the array's size, and a constant
@@ -212,7 +212,7 @@ def _grid(lower, upper, centre, radius):
     """
     points = _POINTS[int(np.sum(lower[:3] < upper[:3]))]
     axes = []
-    for low, high, middle in zip(lower[:3], upper[:3], centre, strict=True):
+    for low, high, middle in zip(lower[:3], upper[:3], center, strict=True):
         if low == high:
             axes.append(np.array([low]))
             continue

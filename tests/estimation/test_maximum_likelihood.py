@@ -276,8 +276,8 @@ def test_an_active_bound_is_flagged():
     assert start.cost > 1e-3
 
 
-def test_of_equally_likely_states_the_one_nearest_to_the_centre_of_the_box_is_taken():
-    centre, width = SPACE.mean(axis=0), SPACE[1] - SPACE[0]
+def test_of_equally_likely_states_the_one_nearest_to_the_center_of_the_box_is_taken():
+    center, width = SPACE.mean(axis=0), SPACE[1] - SPACE[0]
     for z, sigma_f in scenarios(CASES["ring, static"], 20, seed=70):
         start = ml_start(z, RING, sigma_f, T, SPACE, "static")
         assert not start.identifiable and np.isinf(np.diag(start.P)).all()
@@ -287,8 +287,8 @@ def test_of_equally_likely_states_the_one_nearest_to_the_centre_of_the_box_is_ta
         t = np.geomspace(low * 1.0001, high * 0.9999, 2001)
         family = ring_family(np.broadcast_to(start.x, (2001, 6)), 0.2, t)
         near = np.abs(np.log(t)) < 0.2
-        distance = np.linalg.norm((family - centre) / width, axis=1)
-        here = np.linalg.norm((start.x - centre) / width)
+        distance = np.linalg.norm((family - center) / width, axis=1)
+        here = np.linalg.norm((start.x - center) / width)
         # The search stops when a step is below 1e-6 of the box; distance is stationary there.
         assert here <= distance[near].min() + 1e-6
 

@@ -52,7 +52,7 @@ def test_the_default_ring_counts_from_plus_y_towards_plus_z():
 
 @pytest.mark.parametrize("axis", "xyz")
 @pytest.mark.parametrize(("n", "length"), [(2, 1.0), (5, 0.4), (8, 0.7)])
-def test_a_line_is_centred_with_its_ends_at_half_its_length(n, length, axis):
+def test_a_line_is_centered_with_its_ends_at_half_its_length(n, length, axis):
     positions = RadarArray.linear(n, length, axis).positions
     along = [-length / 2 + i * length / (n - 1) for i in range(n)]
     np.testing.assert_allclose(positions, np.outer(along, AXES[axis]), atol=ROUNDING)
