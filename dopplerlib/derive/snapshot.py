@@ -1,0 +1,81 @@
+"""Why a ring sees five numbers and not six, and which second state a plane array nearly confuses.
+
+`dopplerlib.derive.ring` proves that the states of a family look alike. Here is the other half, that
+nothing else is lost: the gradient of the shift around a circle is a polynomial with five
+coefficients. And the Doppler shifts of sensors in a plane, expanded in the size of the array,
+agree to second order for a state and its twin; `dopplerlib.planar_twin` has it as numbers.
+"""
+
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+
+from . import ring
+
+POINT = sp.Symbol("zeta")  # exp(i varphi) for a sensor at the angle varphi
+SIZE = sp.Symbol("epsilon", positive=True)  # scale of the array
+
+
+def ring_harmonics():
+    """Return the (5, 6) matrix of what a ring's snapshot says about `ring.INVARIANTS`.
+
+    The derivative of the shift of a sensor at `ring.ANGLE` by the six invariants, times the
+    wavelength and the third power of the range, is the row (1, cos, sin, cos 2, sin 2) of that
+    angle times this matrix. Such rows of five sensors at different places are independent, so
+    every ring of five sensors or more has the rank of this matrix, and none has more than five.
+    """
+    shift = ring.shift_on_circle()
+    on_circle = {
+        sp.cos(ring.ANGLE): (POINT + 1 / POINT) / 2,
+        sp.sin(ring.ANGLE): (POINT - 1 / POINT) / (2 * sp.I),
+    }
+    s = ring.sensor_on_circle()
+    A, y, z, *_ = ring.INVARIANTS
+    square = A - 2 * (s[1] * y + s[2] * z)
+    columns = []
+    for invariant in ring.INVARIANTS:
+        # The derivative of M / sqrt(D) times D^(3/2): its two terms lose their roots one by one.
+        terms = sp.Add.make_args(sp.diff(shift, invariant) * ring.WAVELENGTH)
+        numerator = sum(sp.powsimp(term * square ** sp.Rational(3, 2)) for term in terms)
+        polynomial = sp.Poly(sp.expand(sp.expand(numerator).subs(on_circle) * POINT**2), POINT)
+        # A sixth coefficient would be one too many to unpack.
+        coefficients = polynomial.all_coeffs()[::-1]
+        m2, m1, c0, p1, p2 = coefficients + [sp.S.Zero] * (5 - len(coefficients))
+        real = [c0, p1 + m1, sp.I * (p1 - m1), p2 + m2, sp.I * (p2 - m2)]
+        columns.append([sp.expand(coefficient) for coefficient in real])
+    return sp.Matrix(columns).T
+
+
+def rank(matrix):
+    """Return the rank of a matrix of rational functions, for generic values of its symbols."""
+    return DomainMatrix.from_Matrix(matrix).to_field().rank()
+
+
+def family_of_invariants():
+    """Return the direction of the family in `ring.INVARIANTS`: (2A, 2y, 2z, w, v_y, v_z)."""
+    A, y, z, w, v_y, v_z = ring.INVARIANTS
+    return sp.Matrix([2 * A, 2 * y, 2 * z, w, v_y, v_z])
+
+
+def prove_harmonics_miss_the_family():
+    """Return `ring_harmonics` times `family_of_invariants`."""
+    return (ring_harmonics() @ family_of_invariants()).expand()
+
+
+def prove_twin_agrees(order):
+    """Return the term of this order, in the size of a plane array, of the shifts' difference.
+
+    The two states share B = p.p and w = p.v. With kappa = w / B the second one has
+    y -> 2 v_y / kappa - 3 y, v_y -> v_y + kappa times the change of y, and likewise for z.
+    """
+    square, w, y, z, v_y, v_z = sp.symbols("B w y z v_y v_z", real=True)
+    s_y, s_z = sp.symbols("s_y s_z", real=True)
+    kappa = w / square
+
+    def shift(y, z, v_y, v_z):
+        distance = square + SIZE**2 * (s_y**2 + s_z**2) - 2 * SIZE * (s_y * y + s_z * z)
+        return (SIZE * (s_y * v_y + s_z * v_z) - w) / sp.sqrt(distance)
+
+    twin_y, twin_z = 2 * v_y / kappa - 3 * y, 2 * v_z / kappa - 3 * z
+    twin = twin_y, twin_z, v_y + kappa * (twin_y - y), v_z + kappa * (twin_z - z)
+    difference = shift(*twin) - shift(y, z, v_y, v_z)
+    return sp.simplify(sp.diff(difference, SIZE, order).subs(SIZE, 0) / sp.factorial(order))

@@ -1,0 +1,55 @@
+"""The second state that a plane array can hardly tell from a given one."""
+
+import numpy as np
+
+from .. import _checks
+
+
+def planar_twin(x):
+    """Return the state whose Doppler shifts nearly equal those of `x` at any array in x = 0.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 6)
+        States [x, y, z, v_x, v_y, v_z] in m and m/s, with x and p.v not zero.
+
+    Returns
+    -------
+    ndarray, shape (..., 6)
+        States on the same side of the array. The twin of the twin is the state itself.
+
+    Raises
+    ------
+    ValueError
+        If `x` has the wrong shape or is not finite, x or p.v is zero, or the twin would have to
+        be farther to the side than it is from the origin.
+
+    Notes
+    -----
+    State and twin have the same p.p and p.v. With kappa = p.v / p.p, the components in the plane
+    are p' = 2 v / kappa - 3 p and v' = v + kappa (p' - p). The shifts of sensors in the plane
+    x = 0 near the origin differ by terms of third order in the size of the array over the
+    distance only; `dopplerlib.derive.snapshot` has the proof.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray, doppler_shift
+    >>> x = np.array([0.8, 0.1, 0.1, -0.7, 0, 0])
+    >>> shifts = doppler_shift([x, planar_twin(x)], RadarArray.ring(6, 0.02))
+    >>> bool(np.abs(shifts[1] - shifts[0]).max() < 0.01)
+    True
+    """
+    x = _checks.finite("x", x, (6,))
+    p, v = x[..., :3], x[..., 3:]
+    square, w = np.sum(p * p, axis=-1), np.sum(p * v, axis=-1)
+    if not ((p[..., 0] != 0) & (w != 0)).all():
+        raise ValueError("x must lie off the plane of the array and have p.v other than zero")
+    kappa = (w / square)[..., None]
+    across = 2 * v[..., 1:] / kappa - 3 * p[..., 1:]
+    across_v = v[..., 1:] + kappa * (across - p[..., 1:])
+    left = square - np.sum(across * across, axis=-1)
+    if not (left > 0).all():
+        raise ValueError("x must have a twin before the array, but its twin is too far aside")
+    ahead = np.copysign(np.sqrt(left), p[..., 0])
+    ahead_v = (w - np.sum(across * across_v, axis=-1)) / ahead
+    return np.concatenate([ahead[..., None], across, ahead_v[..., None], across_v], axis=-1)

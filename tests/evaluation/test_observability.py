@@ -1,0 +1,96 @@
+"""How many directions are seen, how well, and what is taken for what."""
+
+import numpy as np
+import pytest
+
+from dopplerlib import RadarArray, crlb, doppler_jacobian, doppler_shift, ml_start, ring_family
+from dopplerlib.evaluation.observability import confusion, rms_bounds, seen_directions
+from dopplerlib.model.twin import planar_twin
+
+T, SIGMA_F = 1e-3, 0.4
+STATE = np.array([0.833, 0.111, 0.092, -0.75, -0.125, -0.018])
+RING, LINE = RadarArray.ring(6, 0.2), RadarArray.linear(5, 0.4)
+BOX = [0.1, -1, -1, -2, -2, -2], [3, 1, 1, 2, 2, 2]
+
+
+@pytest.mark.parametrize("sensors", [1, 2, 3, 4, 5, 6, 24])
+def test_a_ring_sees_as_many_directions_as_sensors_and_five_at_most(sensors):
+    x = np.random.default_rng(60).normal(size=(30, 6))
+    seen = seen_directions(x, RadarArray.ring(sensors, 0.2))
+    assert (seen == min(sensors, 5)).all()
+
+
+@pytest.mark.parametrize(
+    ("x", "seen"), [([0.8, 0, 0, -0.75, 0, 0], 3), ([0.8, 0, 0, -0.75, 0.3, 0], 5)]
+)
+def test_a_target_straight_on_the_axis_is_seen_in_three_directions(x, seen):
+    assert seen_directions(x, RadarArray.ring(9, 0.2)) == seen
+
+
+def test_motion_shows_all_to_a_ring_but_never_the_turn_about_a_line():
+    assert seen_directions(STATE, RING, 50, T, "moving") == 6
+    assert seen_directions(STATE, LINE) == 4
+    assert seen_directions(STATE, LINE, 50, T, "moving") == 5
+
+
+def test_in_a_plane_a_line_sees_all_four_unknowns():
+    plane = [True, True, False, True, True, False]
+    assert seen_directions(STATE * plane, LINE, free=plane) == 4
+
+
+def test_bounds_are_roots_of_sums_of_variances():
+    P = np.diag([1.0, 4.0, 4.0, 9.0, 36.0, 36.0])
+    position, velocity, away = rms_bounds(P, [2.0, 0, 0, 0, 0, 1])
+    assert (position, velocity, away) == (3.0, 9.0, 1.0)
+    assert rms_bounds(P) == (3.0, 9.0)
+
+
+def test_the_bound_on_range_does_not_depend_on_the_axes():
+    H = doppler_jacobian(STATE, RadarArray(np.random.default_rng(61).normal(size=(9, 3))))
+    turn, _ = np.linalg.qr(np.random.default_rng(62).normal(size=(3, 3)))
+    both = np.kron(np.eye(2), turn)
+    P = np.linalg.inv(H.T @ H)
+    # Rounding of six products.
+    np.testing.assert_allclose(
+        rms_bounds(both @ P @ both.T, both @ STATE), rms_bounds(P, STATE), rtol=1e-10
+    )
+
+
+def test_what_is_not_seen_has_infinite_bounds():
+    assert all(np.isinf(rms_bounds(crlb(STATE, RING, SIGMA_F), STATE)))
+    on_axis = [0.8, 0, 0, -0.75, 0.3, -0.2]
+    P = np.diag([np.inf, 1.0, 1.0, 1.0, 1.0, 1.0])
+    assert np.isinf(rms_bounds(P, on_axis)[2])
+    assert rms_bounds(P, [0, 1.0, 0, 0, 0, 0])[2] == 1.0
+
+
+@pytest.fixture(scope="module")
+def second():
+    return confusion(STATE, RING, SIGMA_F, 100, T, BOX)
+
+
+def test_the_second_valley_is_near_the_family_of_the_twin(second):
+    x, _ = second
+    family = ring_family(planar_twin(STATE), 0.2, np.linspace(0.8, 1.25, 200))
+    # The third order moves it by centimeters, out of half a meter between the two valleys.
+    assert np.linalg.norm((family - x)[:, :3], axis=1).min() < 0.06
+    assert np.linalg.norm(x[:3] - STATE[:3]) > 0.3
+
+
+def test_noise_chooses_the_second_valley_as_often_as_predicted(second):
+    x, chance = second
+    runs = 600
+    path = np.tile(STATE, (100, 1))
+    path[:, :3] += T * np.arange(100)[:, None] * STATE[3:]
+    noise = np.random.default_rng(63).normal(0, SIGMA_F, (runs, 100, 6))
+    found = ml_start(doppler_shift(path, RING) + noise, RING, SIGMA_F, T, BOX).x
+    to_truth, to_second = (np.linalg.norm((found - y)[:, 1:3], axis=1) for y in (STATE, x))
+    # Five standard errors (false alarms: 1e-6), and 0.03 as the formula lets no optimum move.
+    tolerance = 5 * np.sqrt(chance * (1 - chance) / runs) + 0.03
+    assert np.mean(to_second < to_truth) == pytest.approx(chance, abs=tolerance)
+    assert 0.2 < chance < 0.4
+
+
+def test_a_second_ring_leaves_nothing_to_be_confused_with():
+    array = RadarArray(np.vstack([RING.positions, RING.positions / 2]))
+    assert confusion(STATE, array, SIGMA_F, 100, T, BOX)[1] < 1e-3
