@@ -22,7 +22,7 @@ from scipy.optimize import least_squares
 from scipy.stats import beta
 
 from dopplerlib import RadarArray, doppler_shift, ml_start
-from dopplerlib.estimation import _ml_search
+from dopplerlib.estimation import _ml_refine
 from dopplerlib.kernels import doppler as kernel
 
 T, SAMPLES = 1e-3, 10
@@ -136,9 +136,7 @@ def ours(z, sigma_f, case):
 
 @njit
 def refine(x, t, z, w, positions, c, lower, upper, size):
-    return _ml_search._refine(x, t, z, w, positions, c, lower, upper, size, _ml_search.ITERATIONS)[
-        0
-    ]
+    return _ml_refine.refine(x, t, z, w, positions, c, lower, upper, size, _ml_refine.ITERATIONS)[0]
 
 
 def random_starts(z, sigma_f, case, rng):
