@@ -36,7 +36,7 @@ def record(time, z, shift):
         ax.set(
             xlabel="time in s", ylabel="Doppler shift in Hz", title="whole record, without noise"
         )
-        zoom.set(xlabel="time in ms", title="first 50 samples, measured")
+        zoom.set(xlabel="time in ms", ylabel="Doppler shift in Hz", title="first 50 samples")
         return figure
 
 
