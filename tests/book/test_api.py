@@ -18,7 +18,7 @@ MODULES = sorted(
     "dopplerlib."
     + path.relative_to(ROOT / "dopplerlib").with_suffix("").as_posix().replace("/", ".")
     for package in WHOLE
-    for path in (ROOT / "dopplerlib" / package).glob("*.py")
+    for path in (ROOT / "dopplerlib" / package).rglob("*.py")
     if not path.name.startswith("_")
 )
 

@@ -13,7 +13,7 @@ import pytest
 from dopplerlib import chi2_interval, doppler_shift, ekf, nis, simulate
 from dopplerlib.systems import mittermaier2016 as paper
 
-DATA = Path(__file__).resolve().parents[2] / "data" / "mittermaier2016"
+DATA = Path(__file__).resolve().parents[3] / "data" / "mittermaier2016"
 STATE = ("x", "y", "z", "vx", "vy", "vz")
 SEEDS = (1, 2, 3)
 RUNS = 16  # fewer would compile the filter a second time, for one run at a time

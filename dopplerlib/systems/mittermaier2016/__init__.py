@@ -1,0 +1,19 @@
+"""Mittermaier et al. (2016): six Doppler sensors on a ring, one target, an EKF.
+
+Extended Kalman Doppler tracking and model determination for multi-sensor short-range radar,
+Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
+"""
+
+from .published import PublishedFigure6, Table2, published_figure6, quoted, scenario, table2
+from .tracking import Figure6, figure6
+
+__all__ = [
+    "Figure6",
+    "PublishedFigure6",
+    "Table2",
+    "figure6",
+    "published_figure6",
+    "quoted",
+    "scenario",
+    "table2",
+]
