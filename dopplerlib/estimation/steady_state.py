@@ -5,7 +5,7 @@ import numpy as np
 from .. import _checks
 
 
-def steady_state_gain(F, H, Q, R):
+def steady_state_gain(F, Q, H, R):
     """Return the gain and the covariance to which a Kalman filter settles.
 
     Parameters

@@ -22,7 +22,7 @@ def kalata(sigma_a, sigma_z):
 @pytest.mark.parametrize("sigma_a", [0.1, 1.0, 30.0])
 def test_gain_of_position_only_tracking_is_that_of_kalata(sigma_a):
     G = np.array([[T**2 / 2], [T]])
-    K, _ = steady_state_gain(F, H, sigma_a**2 * G @ G.T, [[0.5**2]])
+    K, _ = steady_state_gain(F, sigma_a**2 * G @ G.T, H, [[0.5**2]])
     alpha, beta = kalata(sigma_a, 0.5)
     # SciPy solves the Riccati equation by an ordered Schur form, good to about 1e-10 here.
     np.testing.assert_allclose(K[:, 0], [alpha, beta / T], rtol=1e-8)
@@ -30,7 +30,7 @@ def test_gain_of_position_only_tracking_is_that_of_kalata(sigma_a):
 
 def test_the_covariance_is_that_of_a_long_run():
     Q, H, R = velocity_step_noise(0.01, dim=1), np.eye(2), np.diag([0.25, 1.0])
-    K, P = steady_state_gain(F, H, Q, R)
+    K, P = steady_state_gain(F, Q, H, R)
     track = kf(np.zeros((3000, 2)), F, Q, H, R, np.zeros(2), R)
     # The slowest error decays as exp(-0.01 k).
     np.testing.assert_allclose(track.P[-1], P, rtol=1e-9)
@@ -51,7 +51,7 @@ def test_a_filter_without_noise_trails_an_accelerating_target_by_the_lag():
     a, Q, R = 2.0, velocity_step_noise(0.05, dim=1), np.diag([0.25, 1.0])
     time = np.arange(2000) * T
     truth = np.stack([a * time**2 / 2, a * time], axis=-1)
-    K, _ = steady_state_gain(F, np.eye(2), Q, R)
+    K, _ = steady_state_gain(F, Q, np.eye(2), R)
     track = kf(truth, F, Q, np.eye(2), R, truth[0], R)
     lag = steady_state_lag(F, np.eye(2), K, np.array([T**2 / 2, T]) * a)
     # Positions reach 40 km: rounding leaves 1e-11 m in each of them.
@@ -69,10 +69,10 @@ def test_lags_of_many_pushes_come_at_once():
 
 def test_what_does_not_settle_is_refused():
     with pytest.raises(ValueError, match="F, H, Q must let the filter settle"):
-        steady_state_gain(F, [[0.0, 1.0]], np.zeros((2, 2)), [[1.0]])
+        steady_state_gain(F, np.zeros((2, 2)), [[0.0, 1.0]], [[1.0]])
     with pytest.raises(ValueError, match="K must let errors die out"):
         steady_state_lag(F, H, [[0.0], [0.0]], [0.0, 1.0])
     with pytest.raises(ValueError, match="R must be positive definite"):
-        steady_state_gain(F, H, np.eye(2), [[0.0]])
+        steady_state_gain(F, np.eye(2), H, [[0.0]])
     with pytest.raises(ValueError, match="Q must "):
-        steady_state_gain(F, H, -np.eye(2), [[1.0]])
+        steady_state_gain(F, -np.eye(2), H, [[1.0]])
