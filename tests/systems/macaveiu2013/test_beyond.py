@@ -175,3 +175,8 @@ def test_far_apart_every_rule_follows_both():
             ),
             atol=1e-9,
         )
+
+
+def test_the_longest_gap_is_counted():
+    seen = np.array([[True, False, False, True, False], [False] * 5, [True] * 5])
+    assert chain.longest_gap(seen).tolist() == [2, 5, 0]
