@@ -74,7 +74,7 @@ def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
 
     >>> step = pda_update([0.0], [[1.0]], [[1.0], [-1.0]], [[1]], [[1]], detection=0.9, density=0.1)
     >>> step.x.tolist(), step.weight.round(2).tolist(), bool(step.P[0, 0] > 0.5)
-    ([0.0], [0.46, 0.46], True)
+    ([0.0], [0.49, 0.49], True)
     """
     from scipy.stats import chi2  # here: it takes longer to load than all the rest
 
