@@ -4,7 +4,7 @@ Extended Kalman Doppler tracking and model determination for multi-sensor short-
 Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
-from .error_map import ErrorMap, figure3, figure3_bound, shares_above
+from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
 from .published import (
     PublishedFigure3,
@@ -28,6 +28,7 @@ __all__ = [
     "Reading",
     "Starts",
     "Table2",
+    "comparable",
     "figure3",
     "figure3_bound",
     "figure3_readings",
