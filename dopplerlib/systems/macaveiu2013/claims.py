@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...evaluation.intervals import Estimate, mean_interval, quantile_interval, share_interval
+from ...evaluation.intervals import mean_interval, quantile_interval, share_interval
 from ...evaluation.verdicts import Readings
 from ...model.polar_radar import polar_radar_jacobian
 from . import chain, crossing, lag, regions, tracking, waveforms
@@ -10,7 +10,7 @@ from .published import DATA, KMH, paths, settings
 
 CLAIMS = DATA / "claims.toml"
 RUNS = 200
-NOISES = (0.25, 0.5, 2.0)  # m: readings of "highly affected by noise"
+NOISES = (0.25, 0.5, 2.0)  # m: readings of a noise that is called large and not stated
 
 
 def evidence(*, rng):
@@ -125,14 +125,8 @@ def _others(rng):
         "slow-is-clutter": float(chain.hidden(five[8].truth).sum()),
         "hungarian": Readings(
             {
-                "tracks on one target, against each its nearest": _difference(lost),
-                "tracks swapped, against greedy": _difference(swapped),
+                "tracks on one target, against each its nearest": mean_interval(lost),
+                "tracks swapped, against greedy": mean_interval(swapped),
             }
         ),
     }
-
-
-def _difference(values):
-    """Estimate a mean difference of shares; the runs differ, so that the interval is that of t."""
-    one = mean_interval(values)
-    return Estimate(one.value, one.low, one.high)
