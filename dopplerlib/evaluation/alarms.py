@@ -50,7 +50,8 @@ def innovation_alarms(track, looks, probability=0.001, lags=5):
     if max(looks) > samples:
         raise ValueError(f"looks must be at most the {samples} samples, got {max(looks)}")
     threshold = _checks.probability("probability", probability) / len(looks)
-    white = np.linalg.solve(np.linalg.cholesky(track.S), innovation[..., None])[..., 0]
+    innovation, S = innovation[:, : max(looks)], track.S[:, : max(looks)]
+    white = np.linalg.solve(np.linalg.cholesky(S), innovation[..., None])[..., 0]
     p = {name: [] for name in ("NIS average", "innovation mean", "whiteness")}
     for n in looks:
         total = np.sum(white[:, :n] ** 2, axis=(-2, -1))
@@ -59,7 +60,7 @@ def innovation_alarms(track, looks, probability=0.001, lags=5):
         p["innovation mean"].append(chi2.sf(n * np.sum(mean**2, axis=-1), m))
         enough = n >= 10 * lags
         p["whiteness"].append(
-            innovation_whiteness(innovation[:, :n], track.S[:, :n], lags).p_value
+            innovation_whiteness(innovation[:, :n], S[:, :n], lags).p_value
             if enough
             else np.ones(len(white))
         )

@@ -3,19 +3,33 @@
 Doppler-only tracking implementation, a report with a notebook on Mittermaier et al. (2016).
 """
 
+from .claims import evidence
 from .local_start import local_start
-from .post_mortem import PostMortem, mirrored, post_mortem, repairs
-from .published import StartSettings, reported, reported_record, scenario, start_settings
+from .post_mortem import PostMortem, measures, mirrored, outcomes, post_mortem, repairs
+from .published import (
+    StartSettings,
+    reported,
+    reported_outcomes,
+    reported_record,
+    scenario,
+    start_settings,
+)
 from .student_filter import student_ekf, student_jacobian
+from .table import IntervalTable
 
 __all__ = [
+    "IntervalTable",
     "PostMortem",
     "StartSettings",
+    "evidence",
     "local_start",
+    "measures",
     "mirrored",
+    "outcomes",
     "post_mortem",
     "repairs",
     "reported",
+    "reported_outcomes",
     "reported_record",
     "scenario",
     "start_settings",

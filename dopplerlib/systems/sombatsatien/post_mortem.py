@@ -1,6 +1,6 @@
 """The report's system, run as often as wanted, with each cause of failure repaired or not."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,6 +8,7 @@ from ... import _checks
 from ...estimation.extended_kalman import ekf
 from ...estimation.maximum_likelihood import ml_start
 from ...estimation.track import Track
+from ...evaluation.consistency import nees
 from ...model.doppler import doppler_shift
 from ...model.simulation import simulate
 from .local_start import local_start
@@ -121,37 +122,92 @@ def post_mortem(
     )
 
 
-def repairs(runs, *, rng, starts=("as reported", "global")):
-    """Run every combination of what is repaired and what is not, on the same records.
+def repairs(runs, *, rng):
+    """Run every combination of what is repaired and what is not, on the same noise.
 
     Parameters
     ----------
     runs : int
         Number of independent records.
     rng : numpy.random.Generator
-        Source of the measurement noise. The noise is the same for both planes of the ring.
-    starts : sequence of str
-        Starts to try, see `post_mortem`.
+        Source of the measurement noise.
 
     Returns
     -------
-    dict of tuple to PostMortem
-        By (jacobian, plane, start).
+    dict of str to PostMortem
+        By what is repaired: the "sign" of the Jacobian, the "geometry" of the ring, the "start" by
+        a global search. The first is "as reported"; the last is "all, longer start", see
+        `post_mortem`.
     """
-    s, results = scenario(), {}
-    truth, z = simulate(s, runs, rng=rng)
-    noise = z - doppler_shift(truth, s.array)
-    for plane in ("z", "x"):
-        z = doppler_shift(truth, scenario(plane).array) + noise
-        for start in starts:
-            derived = post_mortem(runs, rng=None, jacobian="derived", plane=plane, start=start, z=z)
-            # A start takes as long as a run of the filter, so it is found once only.
-            x0 = derived.start if start == "as reported" else start
-            results["as reported", plane, start] = post_mortem(
-                runs, rng=None, plane=plane, start=x0, z=z
-            )
-            results["derived", plane, start] = derived
+    truth, z = simulate(scenario(), runs, rng=rng)
+    noise = z - doppler_shift(truth, scenario().array)
+    z = {plane: doppler_shift(truth, scenario(plane).array) + noise for plane in "zx"}
+    derived = {
+        (plane, start): post_mortem(
+            runs, rng=None, jacobian="derived", plane=plane, start=start, z=z[plane]
+        )
+        for plane in "zx"
+        for start in ("as reported", "global")
+    }
+    # A start takes as long as a run of the filter, so it is found once only.
+    wrong = {
+        (plane, start): post_mortem(runs, rng=None, plane=plane, start=one.start, z=z[plane])
+        for (plane, start), one in derived.items()
+    }
+    results = {}
+    for results_of, sign in ((wrong, []), (derived, ["sign"])):
+        for (plane, start), one in results_of.items():
+            done = [*sign, *["geometry"] * (plane == "x"), *["start"] * (start == "global")]
+            results[" + ".join(done) or "as reported"] = one
+    results["all, longer start"] = post_mortem(
+        runs, rng=None, jacobian="derived", plane="x", start="long", z=z["x"]
+    )
     return results
+
+
+def measures(result):
+    """Return four numbers for each run: two of error, two of consistency.
+
+    Parameters
+    ----------
+    result : PostMortem
+        Runs of one variant.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (runs,)
+        By name and unit.
+    """
+    last = replace(result.track, x=result.track.x[:, -1:], P=result.track.P[:, -1:])
+    return {
+        "position RMSE (m)": result.position_rmse,
+        "final error (m)": result.position_error[:, -1],
+        "average NIS": result.track.nis.mean(axis=-1),
+        "final NEES": nees(last, result.truth[-1:])[:, 0],
+    }
+
+
+def outcomes(result):
+    """Return what the report prints of its own run, for each of these runs.
+
+    Parameters
+    ----------
+    result : PostMortem
+        Runs of the report's system.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (runs,)
+        By name and unit; `reported_outcomes` has the report's.
+    """
+    final = result.track.x[:, -1]
+    return {
+        "position RMSE (m)": result.position_rmse,
+        "velocity RMSE (m/s)": result.velocity_rmse,
+        "final position error (m)": result.position_error[:, -1],
+        "final x (m)": final[:, 0],
+        **{f"final v_{c} (m/s)": final[:, 3 + i] for i, c in enumerate("xyz")},
+    }
 
 
 def mirrored(x):

@@ -90,6 +90,24 @@ def reported():
     return _tables()["result"]
 
 
+def reported_outcomes():
+    """Return the results of the report under the names that `outcomes` uses for ours.
+
+    Returns
+    -------
+    dict of str to float
+        By name and unit.
+    """
+    told = reported()
+    return {
+        "position RMSE (m)": told["position_rmse"],
+        "velocity RMSE (m/s)": told["velocity_rmse"],
+        "final position error (m)": told["final_position_error"],
+        "final x (m)": told["final_x"],
+        **{f"final v_{c} (m/s)": v for c, v in zip("xyz", told["final_velocity"], strict=True)},
+    }
+
+
 def reported_record():
     """Return the measurements of the report's one run, noise included.
 

@@ -4,7 +4,8 @@ import numpy as np
 
 from ... import _checks
 from ...estimation.track import Track
-from ...model.doppler import doppler_jacobian, doppler_shift
+from ...kernels.doppler import doppler_shift_and_gradient
+from ...model.doppler import doppler_jacobian
 from ...model.motion import constant_velocity
 
 JACOBIANS = ("as reported", "derived")
@@ -32,11 +33,7 @@ def student_jacobian(x, array, jacobian="as reported"):
     ValueError
         If `jacobian` is neither, or an argument is refused by `doppler_jacobian`.
     """
-    _checks.one_of("jacobian", jacobian, JACOBIANS)
-    H = doppler_jacobian(x, array)
-    if jacobian == "as reported":
-        H[..., :3] *= -1
-    return H
+    return doppler_jacobian(x, array) * _signs(jacobian)
 
 
 def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
@@ -76,6 +73,7 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
     x = np.broadcast_to(_checks.finite("x0", x0, (6,)), (runs, 6))
     P = np.broadcast_to(_checks.covariance("P0", P0, 6), (runs, 6, 6))
     F, Q = constant_velocity(T, sigma_p)
+    signs, sensors = _signs(jacobian), (*array.positions.T, array.doppler_per_speed)
     R = sigma_f**2 * np.eye(m)
     out = Track(
         np.empty((runs, samples, 6)),
@@ -87,8 +85,10 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
     )
     for k in range(samples):
         x, P = x @ F.T, F @ P @ F.T + Q
-        innovation = z[:, k] - doppler_shift(x, array)
-        H = student_jacobian(x, array, jacobian)
+        # The kernel gives the shifts and their derivatives at once.
+        shift, *gradient = doppler_shift_and_gradient(*x.T[..., None], *sensors)
+        innovation = z[:, k] - shift
+        H = np.stack(gradient, axis=-1) * signs
         S = H @ P @ H.mT + R
         # One decomposition of S for the gain and for NIS; P and S are symmetric.
         right = np.concatenate([H @ P, innovation[..., None]], axis=-1)
@@ -100,3 +100,9 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
         out.x[:, k], out.P[:, k], out.innovation[:, k], out.S[:, k] = x, P, innovation, S
         out.nis[:, k] = np.sum(innovation * solved[..., 6], axis=-1)
     return out
+
+
+def _signs(jacobian):
+    """Return what the columns of the derivative are multiplied with."""
+    reported = _checks.one_of("jacobian", jacobian, JACOBIANS) == "as reported"
+    return np.repeat([-1.0 if reported else 1.0, 1.0], 3)

@@ -6,7 +6,7 @@ Expected numbers come from data/sombatsatien, from the other filter, or from a c
 import numpy as np
 import pytest
 
-from dopplerlib import doppler_shift, ekf, simulate
+from dopplerlib import doppler_shift, ekf, nees, simulate
 from dopplerlib.evaluation.checklist import complex_step_jacobian
 from dopplerlib.systems import mittermaier2016
 from dopplerlib.systems import sombatsatien as student
@@ -39,6 +39,15 @@ def test_the_path_is_that_of_the_paper_and_ends_where_the_report_says():
         abs=5.001e-5,  # 0.08375 was rounded up
     )
     assert s.samples - student.start_settings().samples == student.reported()["tracked"]
+
+
+def test_the_settings_are_those_of_the_paper_but_for_the_ring():
+    ours, paper = student.scenario(), mittermaier2016.scenario()
+    for name in ("T", "sigma_f", "sigma_p"):
+        assert getattr(ours, name) == getattr(paper, name)
+    np.testing.assert_array_equal(ours.P0, paper.P0)
+    assert ours.array.wavelength == paper.array.wavelength
+    assert ours.array != paper.array
 
 
 def test_the_ring_of_the_report_lies_in_another_plane_than_the_ring_of_the_paper():
@@ -156,18 +165,60 @@ def test_a_ring_in_the_plane_z_0_cannot_tell_a_target_from_its_mirror_image():
 
 
 def test_the_repairs_share_their_noise_and_their_starts():
-    result = student.repairs(3, rng=np.random.default_rng(7), starts=("as reported", "truth"))
-    assert len(result) == 8
-    for (jacobian, plane, start), one in result.items():
-        np.testing.assert_array_equal(one.start, result["derived", plane, start].start)
-        if plane == "z":
-            again = student.post_mortem(
-                3, rng=np.random.default_rng(7), jacobian=jacobian, plane=plane, start=start
-            )
-            np.testing.assert_array_equal(one.track.x, again.track.x)
-    # The first innovation from the truth is the noise alone.
-    noise = [result["derived", plane, "truth"].track.innovation[:, 0] for plane in "zx"]
+    result = student.repairs(3, rng=np.random.default_rng(7))
+    assert list(result)[0] == "as reported"
+    assert len(result) == 9
+    alone = student.post_mortem(3, rng=np.random.default_rng(7))
+    np.testing.assert_array_equal(result["as reported"].track.x, alone.track.x)
+    alone = student.post_mortem(3, rng=np.random.default_rng(7), jacobian="derived", start="global")
+    np.testing.assert_array_equal(result["sign + start"].track.x, alone.track.x)
+    for name in ("as reported", "start", "geometry", "geometry + start"):
+        repaired = result["sign" if name == "as reported" else f"sign + {name}"]
+        np.testing.assert_array_equal(result[name].start, repaired.start)
+    # Seen from outside: the first innovations, corrected for what was predicted, are the noise.
+    noise = [
+        one.track.innovation[:, 0]
+        + doppler_shift(one.start + before(one.start), student.scenario(plane).array)
+        - doppler_shift(one.truth[0], student.scenario(plane).array)
+        for one, plane in ((result["sign"], "z"), (result["geometry"], "x"))
+    ]
     np.testing.assert_allclose(*noise, atol=1e-9)
+
+
+def before(x):
+    """Return how far these states move in an interval."""
+    return student.scenario().T * np.concatenate([x[:, 3:], np.zeros_like(x[:, 3:])], axis=1)
+
+
+def test_what_is_told_of_a_run_is_what_the_report_tells(rerun):
+    ours, told = student.outcomes(rerun), student.reported_outcomes()
+    assert list(ours) == list(told)
+    for name, value in told.items():
+        assert ours[name].shape == (1,)
+        assert ours[name][0] == pytest.approx(value, abs=2e-3)
+
+
+def test_the_measures_are_those_of_the_whole_track(runs):
+    found = student.measures(runs)
+    np.testing.assert_allclose(found["final NEES"], nees(runs.track, runs.truth)[:, -1])
+    np.testing.assert_array_equal(found["average NIS"], runs.track.nis.mean(axis=-1))
+    np.testing.assert_array_equal(found["final error (m)"], runs.position_error[:, -1])
+    np.testing.assert_allclose(
+        found["position RMSE (m)"] ** 2, np.mean(runs.position_error**2, axis=1)
+    )
+
+
+def test_a_table_shows_two_digits_and_powers_of_ten():
+    table = student.IntervalTable({"a": {"q": [123456.0] * 20}, "b": {"q": [0.0123] * 20}})
+    assert table._repr_markdown_().splitlines() == [
+        "|  | q |",
+        "| --- | --- |",
+        r"| a | $1.2 \cdot 10^5$ ($1.2 \cdot 10^5$ to $1.2 \cdot 10^5$) |",
+        "| b | 0.012 (0.012 to 0.012) |",
+    ]
+    numbers = {"c": {"q": [280.0] * 20}, "d": {"q": [6.04] * 20}, "e": {"q": [15.2] * 20}}
+    cells = student.IntervalTable(numbers)._repr_markdown_()
+    assert all(text in cells for text in ("280 (", "6.0 (", "15 ("))
 
 
 def test_a_long_start_uses_a_tenth_of_the_record_and_brings_its_covariance():
