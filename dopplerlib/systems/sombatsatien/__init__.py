@@ -5,7 +5,16 @@ Doppler-only tracking implementation, a report with a notebook on Mittermaier et
 
 from .claims import evidence
 from .local_start import local_start
-from .post_mortem import PostMortem, measures, mirrored, outcomes, post_mortem, repairs
+from .post_mortem import (
+    PostMortem,
+    consistent_runs,
+    final_bound,
+    measures,
+    mirrored,
+    outcomes,
+    post_mortem,
+    repairs,
+)
 from .published import (
     StartSettings,
     reported,
@@ -21,7 +30,9 @@ __all__ = [
     "IntervalTable",
     "PostMortem",
     "StartSettings",
+    "consistent_runs",
     "evidence",
+    "final_bound",
     "local_start",
     "measures",
     "mirrored",

@@ -2,13 +2,12 @@
 
 import numpy as np
 
-from ...evaluation.bounds import crlb
 from ...evaluation.consistency import chi2_interval
 from ...evaluation.intervals import quantile_interval, share_interval
 from ...evaluation.verdicts import Draws, Readings
 from ...model.doppler import doppler_jacobian
 from .. import mittermaier2016
-from .post_mortem import post_mortem
+from .post_mortem import final_bound, post_mortem
 from .published import reported_record, scenario, start_settings
 from .student_filter import student_jacobian
 
@@ -101,10 +100,6 @@ def _rerun(rng):
 def _conclusions(s, result, sign, repaired):
     start_error = np.linalg.norm((result.start - result.true_start)[:, :3], axis=-1)
     final_error = quantile_interval(repaired.position_error[:, -1])
-    ring = scenario("x")
-    F = np.eye(6)
-    F[:3, 3:] = (ring.samples - 1) * ring.T * np.eye(3)
-    bound = F @ crlb(ring.x0, ring.array, ring.sigma_f, ring.samples, ring.T, "moving") @ F.T
     upper = chi2_interval(len(s.array), len(result.time), 0.999)[1]
     return {
         "ambiguity": share_interval(np.sign(result.start[:, 2]) != np.sign(s.x0[2])),
@@ -113,6 +108,6 @@ def _conclusions(s, result, sign, repaired):
         "consistent": quantile_interval(result.track.nis.mean(axis=-1) / upper),
         "centimeter": quantile_interval(np.abs(result.track.x[:, -1, 0] - result.truth[-1, 0])),
         "limit": final_error,
-        "limit-bound": float(np.sqrt(np.trace(bound[:3, :3]))),
+        "limit-bound": final_bound("x"),
         "approaching": share_interval(repaired.track.x[:, -1, 3] < 0),
     }

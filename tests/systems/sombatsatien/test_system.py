@@ -166,7 +166,7 @@ def test_a_ring_in_the_plane_z_0_cannot_tell_a_target_from_its_mirror_image():
 
 def test_the_repairs_share_their_noise_and_their_starts():
     result = student.repairs(3, rng=np.random.default_rng(7))
-    assert list(result)[0] == "as reported"
+    assert next(iter(result)) == "as reported"
     assert len(result) == 9
     alone = student.post_mortem(3, rng=np.random.default_rng(7))
     np.testing.assert_array_equal(result["as reported"].track.x, alone.track.x)
@@ -206,6 +206,28 @@ def test_the_measures_are_those_of_the_whole_track(runs):
     np.testing.assert_allclose(
         found["position RMSE (m)"] ** 2, np.mean(runs.position_error**2, axis=1)
     )
+
+
+def test_the_consistent_runs_are_consistent():
+    """Average NEES of 100 runs after 50 samples: 6 +- 0.35 at one deviation, so 2 are ample."""
+    right = student.consistent_runs(100, rng=np.random.default_rng(9))
+    assert nees(right.track, right.truth)[:, 49].mean() == pytest.approx(6, abs=2)
+    assert right.track.nis.mean() == pytest.approx(6, abs=0.4)
+
+
+@pytest.mark.parametrize("plane", ["z", "x"])
+def test_the_bound_is_reached_by_least_squares_from_the_truth(plane):
+    """One Gauss-Newton step on the whole record; 200 runs give the rms within 10 %."""
+    s = student.scenario(plane)
+    truth, z = simulate(s, 200, rng=np.random.default_rng(10))
+    at_end = s.time - s.time[-1]
+    H = complex_step_jacobian(truth, s.array)
+    # By the state at the end: p(t) = p_end + (t - t_end) v.
+    H[..., 3:] += at_end[:, None, None] * H[..., :3]
+    residual = (z - doppler_shift(truth, s.array)).reshape(200, -1)
+    error = np.linalg.lstsq(H.reshape(-1, 6), residual.T)[0][:3]
+    rms = np.sqrt(np.mean(np.sum(error**2, axis=0)))
+    assert rms == pytest.approx(student.final_bound(plane), rel=0.15)
 
 
 def test_a_table_shows_two_digits_and_powers_of_ten():
