@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from ...evaluation.intervals import quantile_interval
 
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 @dataclass(frozen=True)
 class IntervalTable:
@@ -30,7 +32,7 @@ class IntervalTable:
 
 def _cell(values):
     median = quantile_interval(values)
-    return f"{_short(median.value)} ({_short(median.low)} to {_short(median.high)})"
+    return f"{_short(median.value)}<br>({_short(median.low)} to {_short(median.high)})"
 
 
 def _short(value):
@@ -38,5 +40,5 @@ def _short(value):
     digits, power = f"{value:.1e}".split("e")
     power = int(power)
     if power >= 4:
-        return rf"${digits} \cdot 10^{power}$"
+        return f"{digits}·10{str(power).translate(_RAISED)}"
     return f"{value:.0f}" if power >= 2 else f"{value:.{1 - power}f}"
