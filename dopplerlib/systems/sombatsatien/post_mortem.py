@@ -12,6 +12,7 @@ from ...evaluation.bounds import crlb
 from ...evaluation.consistency import nees
 from ...model.doppler import doppler_shift
 from ...model.simulation import simulate
+from ...model.twin import planar_twin
 from .local_start import local_start
 from .published import scenario, start_settings
 from .student_filter import JACOBIANS, student_ekf
@@ -186,6 +187,25 @@ def consistent_runs(runs, *, rng):
     start = s.truth[settings.samples - 1] + error
     P0 = 0.01**2 * np.eye(6)
     return post_mortem(runs, rng=rng, jacobian="derived", plane="x", start=start, P0=P0)
+
+
+def nearer_to_twin(result):
+    """Return which runs started nearer to the twin of the true state than to the state itself.
+
+    Parameters
+    ----------
+    result : PostMortem
+        Runs with the ring in the plane x = 0; see `planar_twin`.
+
+    Returns
+    -------
+    ndarray of bool, shape (runs,)
+    """
+    distance = [
+        np.linalg.norm((result.start - x)[:, :3], axis=-1)
+        for x in (planar_twin(result.true_start), result.true_start)
+    ]
+    return distance[0] < distance[1]
 
 
 def final_bound(plane):

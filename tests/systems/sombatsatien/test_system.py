@@ -252,6 +252,10 @@ def test_a_long_start_uses_a_tenth_of_the_record_and_brings_its_covariance():
     np.testing.assert_array_equal(long.truth, s.truth[100:])
     np.testing.assert_array_equal(long.true_start, s.truth[99])
     assert np.trace(long.track.P[0, 0]) < 0.1 * np.trace(s.P0)
+    # A start at the twin ends off the target, one at the target ends on it.
+    at_twin = student.nearer_to_twin(long)
+    assert 0 < at_twin.sum() < 16
+    np.testing.assert_array_equal(at_twin, long.position_error[:, -1] > 0.01)
 
 
 @pytest.mark.parametrize(
