@@ -28,9 +28,9 @@ def test_the_complex_step_agrees_with_the_printed_gradient():
 
 
 @pytest.mark.parametrize("tracker", [ekf, RIGHT])
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_right_filter_passes(tracker, seed):
-    """Three tests at 0.001 each, five seeds: 1.5 % would fail once if the seeds were not fixed."""
+    """Three tests at 0.001 each, three seeds: 0.9 % would fail once if the seeds were not fixed."""
     assert failed(tracker, seed=seed) == set()
 
 
