@@ -14,7 +14,7 @@ from .student_filter import student_jacobian
 AXES = "xyz"
 
 
-def evidence(*, rng, runs=300, as_reported=None):
+def evidence(*, rng, runs=400, as_reported=None):
     """Collect the evidence for ``data/sombatsatien/claims.toml``.
 
     Parameters
@@ -22,7 +22,7 @@ def evidence(*, rng, runs=300, as_reported=None):
     rng : numpy.random.Generator
         Source of randomness.
     runs : int
-        Number of records.
+        Number of records. With 300 or fewer not even a number outside all of them is decided.
     as_reported : PostMortem, optional
         Runs of the report's system, if they have been made already.
 
