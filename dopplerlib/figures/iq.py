@@ -25,7 +25,8 @@ def chain(stages, rates, per_sensor):
     with styled(7.0, 2.3) as figure:
         ax = figure.subplots()
         ax.axis("off")
-        ax.set(xlim=(-0.62, len(stages) - 0.2), ylim=(-0.95, 1.1))
+        ax.set(xlim=(-0.62, len(stages) + 0.05), ylim=(-0.95, 1.1))
+        gap = 0.25  # between what is there for each sensor and what is there once
         for depth in (2, 1):  # sheets behind the first boxes: one chain for each sensor
             ax.add_patch(
                 FancyBboxPatch(
@@ -40,8 +41,10 @@ def chain(stages, rates, per_sensor):
             )
         )  # fmt: skip
         ax.text(-0.48, 0.9, "one for each sensor", color=SENSOR, va="bottom")
-        for i, (name, rate) in enumerate(zip(stages, rates, strict=True)):
-            color = OURS if i >= per_sensor else TRUTH
+        for number, (name, rate) in enumerate(zip(stages, rates, strict=True)):
+            once = number >= per_sensor
+            color, i = (OURS, number + gap) if once else (TRUTH, number)
+            step = 1 + gap * (number == per_sensor - 1)
             ax.add_patch(
                 FancyBboxPatch(
                     (i - 0.36, -0.25), 0.72, 0.55,
@@ -50,11 +53,12 @@ def chain(stages, rates, per_sensor):
             )  # fmt: skip
             ax.text(i, 0.025, name, ha="center", va="center", fontsize=8.6, color=color)
             ax.add_patch(
-                FancyArrowPatch((i + 0.4, 0.02), (i + 0.61, 0.02), arrowstyle="-|>",
+                FancyArrowPatch((i + 0.4, 0.02), (i + step - 0.39, 0.02), arrowstyle="-|>",
                                 mutation_scale=11, color=BOUND, lw=1.2)
             )  # fmt: skip
-            ax.plot([i + 0.5, i + 0.5], [-0.05, -0.6], color=BOUND, lw=0.8, ls=":")
-            ax.text(i + 0.5, -0.64, rate, ha="center", va="top", fontsize=8.2)
+            middle = i + step / 2
+            ax.plot([middle, middle], [-0.05, -0.6], color=BOUND, lw=0.8, ls=":")
+            ax.text(middle, -0.64, rate, ha="center", va="top", fontsize=8.2)
         return figure
 
 
@@ -127,8 +131,9 @@ def peak(f, power, bins, bin_power, vertex, truth):
         near.plot(g, parabola(g), color=ORANGE, ls="--", label="parabola through three")
         near.axvline(truth, color=TRUTH, lw=1, ls=":", label="truth")
         near.plot(vertex, parabola(vertex), "v", color=ORANGE, ms=7)
-        near.set(xlim=(g[0] - 0.6 * width, g[-1] + 0.6 * width), ylim=(0, 1.75 * power.max()))
-        near.legend(loc="upper center", ncols=2, fontsize=8, columnspacing=1)
+        near.set(xlim=(g[0] - 0.6 * width, g[-1] + 0.6 * width), ylim=(0, 1.12 * power.max()))
+        handles, labels = near.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=4, columnspacing=1.2)
         return figure
 
 
@@ -153,7 +158,7 @@ def impairments(f, spectra, truth):
         ax = figure.subplots()
         for (label, power), (color, ls) in zip(spectra.items(), styles, strict=False):
             ax.plot(f, 10 * np.log10(power), color=color, ls=ls, lw=1.2, label=label)
-        low, high = -60, 10 * np.log10(max(power.max() for power in spectra.values()))
+        low, high = -72, 10 * np.log10(max(power.max() for power in spectra.values()))
         for place, text in ((0, "constant"), (truth, "echo"), (-truth, "image")):
             ax.text(place, high + 3, text, ha="center", color=TRUTH)
             ax.axvline(place, color=BOUND, lw=0.8, ls=":", ymax=0.94)

@@ -12,6 +12,7 @@ _STYLES = (
     ("#56B4E9", "-", "v"),
     (TRUTH, "--", "x"),
     ("#8C6D1F", "-.", "+"),
+    ("#7A3E9D", ":", "*"),
 )
 
 
@@ -32,8 +33,8 @@ def outliers(estimates, truth):
     with styled(7.0, 2.8) as figure:
         axes = figure.subplots(1, len(estimates), sharex=True, sharey=True)
         for ax, (label, f) in zip(axes, estimates.items(), strict=True):
-            ax.hist(f / 1e3, bins=80, color=OURS, log=True)
-            ax.axvline(truth / 1e3, color=TRUTH, lw=0.8, ls=":")
+            ax.hist(f / 1e3, bins=60, color=OURS, log=True)
+            ax.plot(truth / 1e3, 1.5 * len(f), "v", color=TRUTH, ms=5)
             ax.set(title=label, xlabel="estimate in kHz")
         axes[0].set_ylabel("number of windows")
         return figure
@@ -130,6 +131,8 @@ def best_window(T, errors, laws, limit):
             xscale="log", yscale="log", xlabel="length of the window in ms",
             ylabel="root-mean-square error in Hz",
         )  # fmt: skip
+        ax.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"])
+        ax.tick_params(axis="x", which="minor", labelbottom=False)
         ax.legend(ncols=2)
         return figure
 
