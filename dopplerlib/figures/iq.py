@@ -158,12 +158,12 @@ def impairments(f, spectra, truth):
         ax = figure.subplots()
         for (label, power), (color, ls) in zip(spectra.items(), styles, strict=False):
             ax.plot(f, 10 * np.log10(power), color=color, ls=ls, lw=1.2, label=label)
-        low, high = -72, 10 * np.log10(max(power.max() for power in spectra.values()))
+        low, high = -62, 10 * np.log10(max(power.max() for power in spectra.values()))
         for place, text in ((0, "constant"), (truth, "echo"), (-truth, "image")):
             ax.text(place, high + 3, text, ha="center", color=TRUTH)
             ax.axvline(place, color=BOUND, lw=0.8, ls=":", ymax=0.94)
         ax.set(xlabel="frequency in Hz", ylabel="power in dB of the echo", ylim=(low, high + 9))
-        ax.legend(loc="lower left", ncols=3)
+        figure.legend(loc="outside upper center", ncols=3)
         return figure
 
 

@@ -32,8 +32,10 @@ def outliers(estimates, truth):
     """
     with styled(7.0, 2.8) as figure:
         axes = figure.subplots(1, len(estimates), sharex=True, sharey=True)
+        largest = max(np.abs(f).max() for f in estimates.values())
+        edges = np.linspace(-largest, largest, 62) / 1e3
         for ax, (label, f) in zip(axes, estimates.items(), strict=True):
-            ax.hist(f / 1e3, bins=60, color=OURS, log=True)
+            ax.hist(f / 1e3, bins=edges, color=OURS, log=True)
             ax.plot(truth / 1e3, 1.5 * len(f), "v", color=TRUTH, ms=5)
             ax.set(title=label, xlabel="estimate in kHz")
         axes[0].set_ylabel("number of windows")
