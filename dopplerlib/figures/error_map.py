@@ -86,12 +86,12 @@ def shares(limits, panels):
         for ax, (title, curves) in zip(axes, panels.items(), strict=True):
             variants = iter(VARIANTS)
             for label, share in curves.items():
-                share = np.where(share > 0, share, np.nan)  # nothing to see on this scale
                 if share.ndim == 1:
                     ax.loglog(limits, share, "D", color=PUBLISHED, ms=5, mec="white", label=label)
                     continue
                 color, style = next(variants)
-                low, middle, high = np.nanpercentile(share, [2.5, 50, 97.5], axis=1)
+                low, middle, high = np.percentile(share, [2.5, 50, 97.5], axis=1)
+                middle[middle == 0] = np.nan  # not on this scale
                 ax.fill_between(limits, low, high, color=color, alpha=0.25, lw=0)
                 ax.loglog(limits, middle, style, color=color, label=label)
             ax.set(
