@@ -119,6 +119,26 @@ def test_the_right_map_is_turned_too_and_its_estimator_knew_that_the_target_move
             assert other.behind > 5 * other.deviation
 
 
+def test_the_bad_corners_are_those_of_the_turned_velocity(published, left):
+    """The text says top right and bottom left; the printed velocity makes them the other two."""
+    (ours,) = left.values()
+    x, y = published.x[:, None], published.y
+    far = (np.abs(x) > 0.3) & (np.abs(y) > 0.3) & paper.comparable(published, 0)
+
+    def excess(error):
+        """Share of errors above 0.2 m at the top right and bottom left, less the others."""
+        there, elsewhere = (
+            paper.shares_above(error, [0.2], far & (sign * x * y > 0)).mean() for sign in (1, -1)
+        )
+        return there - elsewhere
+
+    # 676 places in either pair of corners: a standard error of 2 % for one draw of each.
+    assert excess(published.error[0][..., None]) > 0.06
+    for name, turn in paper.ORIENTATIONS.items():
+        expected = -1 if name in ("as printed", "array turned") else 1
+        assert expected * excess(turn(ours.position)) > 0.06
+
+
 def test_neither_position_nor_state_gives_the_shares_of_the_right_map(published, right):
     """One is too small at 5 cm, the other too large at 20 cm, by more than all of our draws."""
     turn = paper.ORIENTATIONS["all turned"]
