@@ -5,6 +5,11 @@ import numpy as np
 from .style import BOUND, ORANGE, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, styled
 
 KMH = 3.6  # km/h for each m/s
+SETTINGS = {
+    "sigma_p": r"position noise $\sigma_p$ in m",
+    "sigma_v": r"velocity noise $\sigma_v$ in m/s",
+    "w": "velocity step $w$ of the filter in m/s",
+}
 
 
 def scheme(blocks):
@@ -116,43 +121,40 @@ def three_panels(time, runs, run=0):
         return figure
 
 
-def claim_map(sigma_p, w, shares, here):
-    """Draw in how many runs claims hold, over measurement noise and agility of the filter.
+def claim_map(rows, columns, shares, settings):
+    """Draw in how many runs claims hold, over two settings.
 
     Parameters
     ----------
-    sigma_p : sequence of float
-        Position noise in m, one for each row.
-    w : sequence of float
-        Velocity step of the filter in m/s, one for each column.
+    rows, columns : tuple (str, sequence of float)
+        Name and values of a setting, as `regions.claim_map` takes them.
     shares : dict of str to ndarray, shape (rows, columns)
         Share of the runs for each claim.
-    here : tuple of float
-        Our choice (w, sigma_p), to be marked.
+    settings : Settings
+        Our choice, to be marked.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    with styled(7.0, 5.4) as figure:
+    (row, heights), (column, widths) = rows, columns
+    x, y = widths.index(getattr(settings, column)), heights.index(getattr(settings, row))
+    with styled(7.0, 5.2) as figure:
         axes = figure.subplots(2, 2, sharex=True, sharey=True)
         for ax, (title, share) in zip(axes.ravel(), shares.items(), strict=True):
             ax.imshow(share, origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=1)
             for (i, j), value in np.ndenumerate(share):
                 color = "black" if value > 0.6 else "white"
                 ax.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=color, size=8)
-            ax.plot(
-                w.index(here[0]), sigma_p.index(here[1]), "s", mfc="none", mec=PUBLISHED,
-                ms=20, mew=2,
-            )  # fmt: skip
+            ax.plot(x, y, "s", mfc="none", mec=PUBLISHED, ms=20, mew=2)
             ax.grid(False)
-            ax.set_xticks(range(len(w)), [f"{one:g}" for one in w])
-            ax.set_yticks(range(len(sigma_p)), [f"{one:g}" for one in sigma_p])
+            ax.set_xticks(range(len(widths)), [f"{one:g}" for one in widths])
+            ax.set_yticks(range(len(heights)), [f"{one:g}" for one in heights])
             ax.set_title(title)
         for ax in axes[-1]:
-            ax.set_xlabel("velocity step $w$ of the filter in m/s")
+            ax.set_xlabel(SETTINGS[column])
         for ax in axes[:, 0]:
-            ax.set_ylabel(r"position noise $\sigma_p$ in m")
+            ax.set_ylabel(SETTINGS[row])
         return figure
 
 

@@ -86,10 +86,14 @@ def test_three_panels_are_in_kilometers_per_hour():
 
 def test_a_claim_map_writes_percent_and_marks_our_choice():
     share = np.array([[0.0, 0.5], [1.0, 0.25]])
-    figure = draw.claim_map((0.5, 1.0), (0.01, 0.1), {str(i): share for i in range(4)}, (0.1, 0.5))
+    rows, columns = ("sigma_p", (0.5, 1.0)), ("w", (0.01, 0.1))
+    ours = SimpleNamespace(sigma_p=0.5, w=0.1)
+    figure = draw.claim_map(rows, columns, {str(i): share for i in range(4)}, ours)
     ax = figure.axes[0]
     assert [text.get_text() for text in ax.texts] == ["0", "50", "100", "25"]
     assert ax.lines[0].get_xydata().tolist() == [[1.0, 0.0]]
+    assert figure.axes[2].get_xlabel() == "velocity step $w$ of the filter in m/s"
+    assert ax.get_ylabel().endswith("in m")
 
 
 def test_lags_carry_their_intervals():
