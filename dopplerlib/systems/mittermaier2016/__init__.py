@@ -4,7 +4,7 @@ Extended Kalman Doppler tracking and model determination for multi-sensor short-
 Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
-from .causes import Consistency, consistency_runs, matched_P0, switched_ekf
+from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
 from .faults import faulty_filters, linear_filter, linear_world
 from .published import PublishedFigure6, Table2, published_figure6, quoted, scenario, table2
 from .tracking import Figure6, figure6
@@ -22,6 +22,7 @@ __all__ = [
     "matched_P0",
     "published_figure6",
     "quoted",
+    "range_claims",
     "scenario",
     "switched_ekf",
     "table2",

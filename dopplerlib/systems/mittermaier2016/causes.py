@@ -228,6 +228,30 @@ def matched_P0():
     return np.diag(variance)
 
 
+def range_claims(result):
+    """Return how far the range is off, and how far the filter says that it is.
+
+    Parameters
+    ----------
+    result : Consistency
+        Runs of one filter.
+
+    Returns
+    -------
+    actual : ndarray, shape (M,)
+        Size of the error along the line of sight from the origin, in m: the median over the runs of
+        its absolute value, divided by that of a standard normal number, so that lost runs count
+        no more than others.
+    claimed : ndarray, shape (M,)
+        Median over the runs of its standard deviation as the filter believes it, in m.
+    """
+    u = result.truth[:, :3] / np.linalg.norm(result.truth[:, :3], axis=-1, keepdims=True)
+    error = np.sum((result.x - result.truth)[..., :3] * u, axis=-1)
+    variance = np.einsum("mi,rmij,mj->rm", u, result.P[..., :3, :3], u)
+    # 0.6745 is the upper quartile of a standard normal number.
+    return np.median(np.abs(error), axis=0) / 0.6745, np.median(np.sqrt(variance), axis=0)
+
+
 def _times(matrix, vector):
     if matrix.ndim == 2 or len(matrix) == 1:  # the same in every run: one product for all
         return vector @ matrix.reshape(matrix.shape[-2:]).T
