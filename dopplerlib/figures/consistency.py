@@ -145,7 +145,9 @@ def averages_spread(averages, intervals):
         axes[0].set_ylabel("runs")
         handles = {}  # the panels share labels
         for ax in axes:
-            handles |= {text: handle for handle, text in zip(*ax.get_legend_handles_labels())}
+            handles |= {
+                text: handle for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)
+            }
         figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=3)
         return figure
 

@@ -148,8 +148,8 @@ class Consistency:
 
 
 def consistency_runs(
-    runs, *, rng, keep=None, samples=None, start=None, P0=None, noise="common", sigma_f=None,
-    chunk=500, **switches,
+    runs, *, rng, keep=None, samples=None, start=None, P0=None, noise="common", sigma_p=None,
+    sigma_f=None, chunk=500, **switches,
 ):  # fmt: skip
     """Run the simulation example without a gate, and compare its errors with their covariances.
 
@@ -169,6 +169,9 @@ def consistency_runs(
         Its covariance; that of the scenario, 0.1 I, if None.
     noise : {"common", "independent"}
         See `constant_velocity`.
+    sigma_p : float, optional
+        Standard deviation of the push that the filter believes, in m/s^2; that of the scenario if
+        None.
     sigma_f : array_like, broadcast to (K, N), optional
         Standard deviation that the filter believes, in Hz; that of the scenario if None.
     chunk : int
@@ -194,7 +197,7 @@ def consistency_runs(
     start = _checks.finite("start", table2().x_ml if start is None else start, (6,))
     F, _ = constant_velocity(s.T, s.sigma_p)
     before = np.broadcast_to(np.linalg.solve(F, start[..., None])[..., 0], (runs, 6))
-    settings = (s.P0 if P0 is None else P0, s.T, s.sigma_p)
+    settings = (s.P0 if P0 is None else P0, s.T, s.sigma_p if sigma_p is None else sigma_p)
     sigma_f = s.sigma_f if sigma_f is None else sigma_f
     parts = []
     for first in range(0, runs, chunk):
