@@ -1,0 +1,164 @@
+"""Numbers with their Monte Carlo interval: means, shares and quantiles of independent runs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _checks
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number that was estimated from runs, and the interval that its uncertainty leaves.
+
+    Attributes
+    ----------
+    value : float
+        The estimate.
+    low : float
+        Lower end of its confidence interval.
+    high : float
+        Upper end.
+    """
+
+    value: float
+    low: float
+    high: float
+
+    def __str__(self):
+        return f"{self.value:.3g} ({self.low:.3g} to {self.high:.3g})"
+
+
+def mean_interval(values, confidence=0.95):
+    """Estimate the mean of what independent runs are drawn from.
+
+    Parameters
+    ----------
+    values : array_like, shape (runs,)
+        One number from each run; at least two.
+    confidence : float
+        Probability with which the interval holds the mean.
+
+    Returns
+    -------
+    Estimate
+
+    Raises
+    ------
+    ValueError
+        If `values` is not a list of at least two finite numbers or `confidence` is not between
+        0 and 1.
+
+    Notes
+    -----
+    Student's t interval: exact for normal values, and by the central limit theorem good for any
+    others that have a variance, if the runs are many. For heavy tails use `quantile_interval`.
+
+    Examples
+    --------
+    >>> print(mean_interval([1.0, 2.0, 3.0, 4.0]))
+    2.5 (0.446 to 4.55)
+    """
+    from scipy.special import stdtrit
+
+    values, confidence = _runs(values, 2), _checks.probability("confidence", confidence)
+    mean = values.mean()
+    half = stdtrit(len(values) - 1, (1 + confidence) / 2) * values.std(ddof=1) / len(values) ** 0.5
+    return Estimate(float(mean), float(mean - half), float(mean + half))
+
+
+def share_interval(hits, confidence=0.95):
+    """Estimate the probability of an event from the runs in which it happened.
+
+    Parameters
+    ----------
+    hits : array_like of bool, shape (runs,)
+        Whether the event happened in a run.
+    confidence : float
+        Probability, at least, with which the interval holds the probability of the event.
+
+    Returns
+    -------
+    Estimate
+
+    Raises
+    ------
+    ValueError
+        If `hits` is not a list of booleans, is empty, or `confidence` is not between 0 and 1.
+
+    Notes
+    -----
+    The exact interval of Clopper and Pearson (1934).
+
+    Examples
+    --------
+    >>> print(share_interval([True] * 9 + [False]))
+    0.9 (0.555 to 0.997)
+    """
+    from scipy.special import betaincinv
+
+    hits = np.asarray(hits)
+    if hits.dtype != bool or hits.ndim != 1 or not len(hits):
+        raise ValueError(
+            f"hits must be booleans of shape (runs,), got {hits.dtype} of shape {hits.shape}"
+        )
+    tail = (1 - _checks.probability("confidence", confidence)) / 2
+    k, n = int(hits.sum()), len(hits)
+    low = betaincinv(k, n - k + 1, tail) if k else 0.0
+    high = betaincinv(k + 1, n - k, 1 - tail) if k < n else 1.0
+    return Estimate(k / n, float(low), float(high))
+
+
+def quantile_interval(values, q=0.5, confidence=0.95):
+    """Estimate a quantile of what independent runs are drawn from: the median by default.
+
+    Parameters
+    ----------
+    values : array_like, shape (runs,)
+        One number from each run; infinite ones are allowed.
+    q : float
+        Probability that the quantile leaves below it.
+    confidence : float
+        Probability, at least, with which the interval holds the quantile.
+
+    Returns
+    -------
+    Estimate
+        Ends that the runs are too few for are infinite.
+
+    Raises
+    ------
+    ValueError
+        If `values` is not a list of numbers, has NaN in it, or `q` or `confidence` is not between
+        0 and 1.
+
+    Notes
+    -----
+    Free of assumptions on the distribution: the number of runs below the quantile is binomial, so
+    the ends are order statistics (Conover 1999, Sec 3.2).
+
+    Examples
+    --------
+    >>> print(quantile_interval(range(101)))
+    50 (40 to 60)
+    """
+    from scipy.stats import binom
+
+    values = np.sort(_runs(values, 1, infinite=True))
+    q = _checks.probability("q", q)
+    tail = (1 - _checks.probability("confidence", confidence)) / 2
+    n = len(values)
+    # Order statistics, counted from 1: the quantile is below the first with at most `tail`.
+    first, last = int(binom.ppf(tail, n, q)), int(binom.isf(tail, n, q)) + 1
+    low = values[first - 1] if first >= 1 else -np.inf
+    high = values[last - 1] if last <= n else np.inf
+    return Estimate(float(np.quantile(values, q)), float(low), float(high))
+
+
+def _runs(values, least, infinite=False):
+    array = _checks.real("values", values)
+    if array.ndim != 1 or len(array) < least:
+        raise ValueError(f"values must hold at least {least} runs, got shape {array.shape}")
+    if np.isnan(array).any() or not (infinite or np.isfinite(array).all()):
+        raise ValueError(f"values must be finite, got {array[~np.isfinite(array)][0]}")
+    return array

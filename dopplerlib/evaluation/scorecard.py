@@ -1,0 +1,63 @@
+"""The verdicts on all claims of a document, as a table for a page."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from .claims import VERDICTS
+from .intervals import Estimate
+
+
+@dataclass(frozen=True)
+class Scorecard:
+    """Judgments that a notebook shows as a table, with links to the cells behind them.
+
+    Attributes
+    ----------
+    judgments : tuple of Judgment
+        As `judge_all` returns them.
+    """
+
+    judgments: tuple
+
+    @property
+    def counts(self):
+        """Number of claims by verdict, in the order of the verdicts."""
+        counts = Counter(one.verdict for one in self.judgments)
+        return {verdict: counts[verdict] for verdict in VERDICTS if counts[verdict]}
+
+    def __repr__(self):
+        total = ", ".join(f"{count} {verdict}" for verdict, count in self.counts.items())
+        return f"{len(self.judgments)} claims: {total}"
+
+    def _repr_markdown_(self):
+        head = ["| claim | published | ours | verdict |", "|---|---|---|---|"]
+        return "\n".join(head + [_row(one) for one in self.judgments])
+
+
+def _row(judgment):
+    claim = judgment.claim
+    told = [f"**{claim.statement}** {claim.where}."]
+    if claim.note:
+        told.append(claim.note)
+    told.append(
+        f'<a href="{claim.page}.html#cell-{claim.cell}">{claim.page}</a> · '
+        f'<code class="test">{claim.test.split("::")[-1]}</code>'
+    )
+    relation = f"{claim.relation} " if claim.relation else ""
+    published = f"{relation}{_number(judgment.published)} {claim.unit}".strip()
+    ours = [f"{_number(judgment.ours)} {claim.unit}".strip()]
+    if judgment.percentile is not None:
+        ours.append(f"published at the percentile {judgment.percentile}")
+    if judgment.reading is not None:
+        ours.append(f"nearest reading: {judgment.reading}")
+    badge = f'<span class="verdict verdict-{judgment.verdict}">{judgment.verdict}</span>'
+    cells = "<br>".join(told), published, "<br>".join(ours), badge
+    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+
+
+def _number(value):
+    if isinstance(value, Estimate):
+        return f"{value.value:.3g}" if value.low == value.high else str(value)
+    return ", ".join(f"{one:.4g}" for one in np.atleast_1d(value))

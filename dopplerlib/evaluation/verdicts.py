@@ -1,0 +1,242 @@
+"""The verdict on a claim: what the document says beside what we find."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _checks
+from .claims import Claim
+from .intervals import Estimate, share_interval
+
+# Share of our runs that a typical draw leaves on either side of it.
+_TAIL = 0.025
+
+_HOLDS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal}
+
+
+@dataclass(frozen=True)
+class Draws:
+    """Evidence on the outcome of a random run: what it is in many runs of ours.
+
+    Attributes
+    ----------
+    values : array_like, shape (runs,)
+        The same quantity in independent runs.
+    published : float, optional
+        The document's, if its ``claims.toml`` cannot state it.
+    """
+
+    values: np.ndarray
+    published: float | None = None
+
+
+@dataclass(frozen=True)
+class Readings:
+    """Evidence on a claim that leaves something open: one piece for each way to read it.
+
+    Attributes
+    ----------
+    by_name : dict
+        A float, `Estimate` or `Draws` for each reading.
+    """
+
+    by_name: dict
+
+
+@dataclass(frozen=True)
+class Judgment:
+    """A verdict and what it rests on.
+
+    Attributes
+    ----------
+    claim : Claim
+        The claim.
+    verdict : str
+        See `Claim`.
+    ours : Estimate or float or ndarray
+        Our number; of a random run the median, with the interval in which 95 % of ours lie.
+    published : float or list of float
+        The number that it was compared with.
+    percentile : Estimate, optional
+        Share of our runs below the published one, in percent, with its Monte Carlo interval.
+    reading : str, optional
+        The reading that comes nearest.
+    decided : bool
+        Whether the runs were enough: another seed would hardly change the verdict.
+    """
+
+    claim: Claim
+    verdict: str
+    ours: Estimate | float | np.ndarray
+    published: float | list
+    percentile: Estimate | None = None
+    reading: str | None = None
+    decided: bool = True
+
+
+def judge(claim, evidence):
+    """Compare a claim with the evidence.
+
+    Parameters
+    ----------
+    claim : Claim
+        What is claimed.
+    evidence : float, array_like, Estimate, Draws or Readings
+        Our number for a deterministic claim (as many as are published); an `Estimate`, or a float
+        without uncertainty, for a relation; `Draws` for a random run. `Readings` holds one of
+        these for each way to read the claim.
+
+    Returns
+    -------
+    Judgment
+
+    Raises
+    ------
+    ValueError
+        If the evidence is not of the kind that the claim needs, or the published number is
+        missing or given twice.
+
+    Notes
+    -----
+    * *reproduced*: a deterministic number within its rounding; a relation that holds on the whole
+      interval of our estimate.
+    * *typical*, *atypical*: a random outcome inside or outside the central 95 % of ours.
+    * *contradicted*: any other number; a relation that holds nowhere on the interval.
+    * *underdetermined*: the readings lead to different verdicts, or the interval of the estimate
+      holds the limit.
+
+    Examples
+    --------
+    >>> from dopplerlib.evaluation.claims import Claim
+    >>> claim = Claim("pi", "Sec 1", "the circle's number", "deterministic", "reproduced",
+    ...               "page", "cell", "test", published=3.14, rounding=0.005)
+    >>> judge(claim, 3.14159).verdict
+    'reproduced'
+    """
+    if isinstance(evidence, Readings):
+        return _judge_readings(claim, evidence)
+    published = _published(claim, evidence)
+    if claim.kind == "random":
+        if not isinstance(evidence, Draws):
+            raise _wrong(claim, "Draws", evidence)
+        return _judge_draw(claim, published, evidence)
+    if claim.kind == "relation":
+        if isinstance(evidence, (int, float)):
+            evidence = Estimate(float(evidence), float(evidence), float(evidence))
+        if not isinstance(evidence, Estimate):
+            raise _wrong(claim, "an Estimate or a float", evidence)
+        return _judge_relation(claim, published, evidence)
+    if isinstance(evidence, (Estimate, Draws)):
+        raise _wrong(claim, "a number", evidence)
+    ours = _checks.finite(f"the evidence for {claim.id!r}", evidence)
+    if np.shape(published) != ours.shape:
+        raise _wrong(claim, f"numbers of shape {np.shape(published)}", evidence)
+    # Half a unit of the last digit, and a little for the rounding of decimal fractions.
+    same = np.abs(ours - published) <= claim.rounding * (1 + 1e-9) + 1e-12 * np.abs(published)
+    verdict = "reproduced" if same.all() else "contradicted"
+    return Judgment(claim, verdict, ours if ours.ndim else float(ours), published)
+
+
+def judge_all(claims, evidence):
+    """Compare all claims of a document with the evidence.
+
+    Parameters
+    ----------
+    claims : sequence of Claim
+        As `read_claims` returns them.
+    evidence : dict
+        Evidence by the id of the claim, for each of them and no others.
+
+    Returns
+    -------
+    tuple of Judgment
+        In the order of the claims.
+
+    Raises
+    ------
+    ValueError
+        If a claim has no evidence, evidence has no claim, or the two do not fit.
+    """
+    names = [claim.id for claim in claims]
+    for name in names:
+        if name not in evidence:
+            raise ValueError(f"evidence must hold every claim, got none for {name!r}")
+    for name in evidence:
+        if name not in names:
+            raise ValueError(f"evidence must belong to a claim, got {name!r}, which is none")
+    return tuple(judge(claim, evidence[claim.id]) for claim in claims)
+
+
+def _judge_draw(claim, published, draws):
+    values = _checks.finite(f"the evidence for {claim.id!r}", draws.values)
+    # What is printed as 5.82 may be anything from 5.815 to 5.825.
+    below = share_interval(values <= published + claim.rounding, 0.999)
+    above = share_interval(values >= published - claim.rounding, 0.999)
+    tail = min(below, above, key=lambda share: share.value)
+    low, middle, high = np.quantile(values, [_TAIL, 0.5, 1 - _TAIL])
+    share = share_interval(values < published)
+    return Judgment(
+        claim,
+        "typical" if tail.value >= _TAIL else "atypical",
+        Estimate(float(middle), float(low), float(high)),
+        published,
+        percentile=Estimate(100 * share.value, 100 * share.low, 100 * share.high),
+        decided=not tail.low < _TAIL < tail.high,
+    )
+
+
+def _judge_relation(claim, limit, estimate):
+    holds = _HOLDS[claim.relation]
+    at_ends = holds(estimate.low, limit), holds(estimate.high, limit)
+    verdict = "underdetermined"
+    if all(at_ends) or not any(at_ends):
+        verdict = "reproduced" if all(at_ends) else "contradicted"
+    # An interval of 95 % that comes this near may hold the limit for another seed.
+    near = estimate.value - limit
+    room = estimate.value - estimate.low if near > 0 else estimate.high - estimate.value
+    return Judgment(
+        claim, verdict, estimate, limit, decided=bool(room == 0 or abs(near) > 2 * room)
+    )
+
+
+def _judge_readings(claim, readings):
+    if len(readings.by_name) < 2:
+        raise ValueError(f"the evidence for {claim.id!r} must hold two readings or more")
+    found = {name: judge(claim, one) for name, one in readings.by_name.items()}
+    order = ("reproduced", "typical", "underdetermined", "atypical", "contradicted")
+    nearest = min(
+        found, key=lambda name: (order.index(found[name].verdict), _distance(found[name]))
+    )
+    verdicts = {one.verdict for one in found.values()}
+    best = found[nearest]
+    return Judgment(
+        claim,
+        best.verdict if len(verdicts) == 1 else "underdetermined",
+        best.ours,
+        best.published,
+        best.percentile,
+        nearest,
+        all(one.decided for one in found.values()),
+    )
+
+
+def _distance(judgment):
+    ours = judgment.ours.value if isinstance(judgment.ours, Estimate) else judgment.ours
+    return float(np.max(np.abs(np.subtract(ours, judgment.published))))
+
+
+def _published(claim, evidence):
+    brought = getattr(evidence, "published", None)
+    if (claim.published is None) == (brought is None):
+        times = "twice" if brought is not None else "not at all"
+        raise ValueError(
+            f"the published number of {claim.id!r} must be given by the claim or by the "
+            f"evidence, got it {times}"
+        )
+    return claim.published if brought is None else float(brought)
+
+
+def _wrong(claim, wanted, evidence):
+    return ValueError(
+        f"the evidence for {claim.id!r}, a {claim.kind} claim, must be {wanted}, got {evidence!r}"
+    )

@@ -1,0 +1,45 @@
+"""A page of the built book can link to a cell by its id."""
+
+import importlib.util
+from pathlib import Path
+from types import SimpleNamespace
+
+import nbformat
+import pytest
+from docutils import nodes
+
+BOOK = Path(__file__).resolve().parents[2] / "book"
+
+
+@pytest.fixture
+def extension():
+    spec = importlib.util.spec_from_file_location("cell_anchors", BOOK / "_ext/cell_anchors.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def app_for(path):
+    env = SimpleNamespace(docname="page", doc2path=lambda _: str(path))
+    return SimpleNamespace(env=env)
+
+
+def test_code_cells_get_their_ids_and_nothing_else_does(extension, tmp_path):
+    path = tmp_path / "page.ipynb"
+    cells = [
+        nbformat.v4.new_markdown_cell("text", id="words"),
+        nbformat.v4.new_code_cell("1", id="one"),
+    ]
+    nbformat.write(nbformat.v4.new_notebook(cells=cells), path)
+    code = nodes.container(nb_element="cell_code", cell_index=1)
+    output = nodes.container(nb_element="cell_code_output")
+    tree = nodes.container("", code, output)
+    extension._add_anchors(app_for(path), tree)
+    assert code["ids"] == ["cell-one"]
+    assert output["ids"] == tree["ids"] == []
+
+
+def test_a_page_that_is_no_notebook_is_left_alone(extension, tmp_path):
+    code = nodes.container(nb_element="cell_code", cell_index=0)
+    extension._add_anchors(app_for(tmp_path / "page.md"), nodes.container("", code))
+    assert code["ids"] == []

@@ -1,0 +1,49 @@
+"""A file of claims is read as it is written, or refused with the reason."""
+
+import pytest
+
+from dopplerlib.evaluation.claims import read_claims
+
+GOOD = """
+[[claim]]
+id = "nis"
+where = "Fig 6"
+statement = "NIS is near six"
+kind = "random"
+published = 5.82
+rounding = 0.005
+verdict = "typical"
+page = "figure6"
+cell = "nis"
+test = "tests/test_x.py::test_nis"
+"""
+
+
+def read(tmp_path, text):
+    path = tmp_path / "claims.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_claims(path)
+
+
+def test_a_claim_has_what_the_file_says(tmp_path):
+    (claim,) = read(tmp_path, GOOD)
+    assert (claim.id, claim.published, claim.rounding, claim.unit) == ("nis", 5.82, 0.005, "")
+
+
+@pytest.mark.parametrize(
+    "old, new, message",
+    [
+        (GOOD, "", r"must hold a list of \[\[claim\]\], got none"),
+        (GOOD, GOOD + GOOD, "the id of a claim must be unique, got 'nis' twice"),
+        ('where = "Fig 6"', "", "claim 'nis' is incomplete: .*where"),
+        ("cell", "cel", "claim 'nis' has an unknown entry 'cel'"),
+        ('"random"', '"luck"', "kind of claim 'nis' must be one of .*, got 'luck'"),
+        ('"typical"', '"fine"', "verdict of claim 'nis' must be one of .*, got 'fine'"),
+        ('"random"', '"relation"', "relation of claim 'nis' must be one of .*, got None"),
+        ('"typical"', '"contradicted"', "claim 'nis' is contradicted, so it needs a note"),
+    ],
+)
+def test_a_wrong_file_is_refused(tmp_path, old, new, message):
+    assert old in GOOD
+    with pytest.raises(ValueError, match=message):
+        read(tmp_path, GOOD.replace(old, new))
