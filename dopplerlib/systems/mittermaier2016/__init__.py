@@ -16,10 +16,12 @@ from .published import (
     published_figure6,
     quoted,
     scenario,
+    signal_chain,
     table2,
 )
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
 from .tracking import Figure6, figure6
+from .white_noise import WalkFilter, walk_filter
 
 __all__ = [
     "ORIENTATIONS",
@@ -31,6 +33,7 @@ __all__ = [
     "Reading",
     "Starts",
     "Table2",
+    "WalkFilter",
     "comparable",
     "consistency_runs",
     "faulty_filters",
@@ -49,9 +52,11 @@ __all__ = [
     "samples_needed",
     "scenario",
     "shares_above",
+    "signal_chain",
     "start_box",
     "start_misfit",
     "switched_ekf",
     "table2",
     "table2_starts",
+    "walk_filter",
 ]

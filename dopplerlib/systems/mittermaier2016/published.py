@@ -200,6 +200,17 @@ def published_figure6():
     )
 
 
+def signal_chain():
+    """Return what the paper says about its signal chain, by name.
+
+    Returns
+    -------
+    dict
+        Units are in the names; see ``data/mittermaier2016/signal_chain.toml``.
+    """
+    return tomllib.loads((DATA / "signal_chain.toml").read_text(encoding="utf-8"))
+
+
 def quoted():
     """Return the numbers that Table 2 and Section 4 quote in words, by name.
 
