@@ -72,7 +72,7 @@ class PublishedFigure3:
 
     @property
     def shown(self):
-        """Errors for drawing, in m: `lowest` where only known to be below it."""
+        """Return `error` with `lowest` in it where the error is only known to be below."""
         return np.where(self.below, self.lowest, self.error)
 
 
