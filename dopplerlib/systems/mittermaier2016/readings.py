@@ -21,7 +21,7 @@ _VELOCITIES = (
     Reading("square", (0.0, 1.0)),
     Reading("square", (0.0, 2.0)),
 )
-# Every velocity with either likelihood, one draw for all points or one for each. Then, for the most
+# Every velocity with either likelihood, one draw for all points or one for each. Then, for some of the
 # likely ones, what else could be different: the grid of the text, other boxes, the array turned.
 READINGS = (
     tuple(
@@ -36,9 +36,14 @@ READINGS = (
         for likelihood in ("moving", "static")
     )
     + tuple(
-        replace(velocity, spacing=0.1, **change)
-        for velocity in (_VELOCITIES[1], _VELOCITIES[3])
-        for change in ({"box": "approaching"}, {"box": "region"}, {"axis": "x"})
+        replace(velocity, shared=shared, likelihood=likelihood, spacing=0.1, box=box)
+        for velocity in (_VELOCITIES[1], _VELOCITIES[3], _VELOCITIES[8])
+        for shared in (True, False)
+        for likelihood in ("moving", "static")
+        for box in ("approaching", "region")
+    )
+    + tuple(
+        replace(velocity, spacing=0.1, axis="x") for velocity in (_VELOCITIES[1], _VELOCITIES[3])
     )
 )
 # Levels at which readings are compared: below them the dots are a few steps of their grid.
