@@ -6,18 +6,18 @@ import pytest
 from numpy.testing import assert_allclose
 
 from dopplerlib.figures import noise_sweep as draw
-from dopplerlib.systems.mittermaier2016 import LEVELS, Figure4, PublishedFigure4
+from dopplerlib.systems.mittermaier2016 import NOISE_LEVELS, Figure4, PublishedFigure4
 
-ERROR = 0.2 * np.sqrt(LEVELS)[:, None] * np.linspace(0.8, 1.2, 5)
-OURS = Figure4(LEVELS, ERROR, 2 * ERROR, ERROR / 2, ERROR, 0.9 * ERROR, 1.8 * ERROR)
-DOTS = PublishedFigure4(LEVELS, 1.1 * ERROR, 2.1 * ERROR)
+ERROR = 0.2 * np.sqrt(NOISE_LEVELS)[:, None] * np.linspace(0.8, 1.2, 5)
+OURS = Figure4(NOISE_LEVELS, ERROR, 2 * ERROR, ERROR / 2, ERROR, 0.9 * ERROR, 1.8 * ERROR)
+DOTS = PublishedFigure4(NOISE_LEVELS, 1.1 * ERROR, 2.1 * ERROR)
 
 
 @pytest.fixture(scope="module")
 def figures():
     return {
         "errors": draw.errors_by_noise(OURS, DOTS),
-        "median": draw.mean_and_median({"a": (ERROR, ERROR / 2)}, 0.9 * ERROR[:, 2], LEVELS),
+        "median": draw.mean_and_median({"a": (ERROR, ERROR / 2)}, 0.9 * ERROR[:, 2], NOISE_LEVELS),
         "sequences": draw.sequences({"a": ERROR[:2], "b": 2 * ERROR[:2]}),
     }
 
