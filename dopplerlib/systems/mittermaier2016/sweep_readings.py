@@ -21,8 +21,8 @@ _VELOCITIES = (
     SweepReading("square", (0.0, 1.0)),
     SweepReading("square", (0.0, 2.0)),
 )
-# Every velocity with either likelihood, one draw for all points or one for each. Then, for some of the
-# likely ones, what else could be different: the grid of the text, other boxes, the array turned.
+# Every velocity with either likelihood, one draw for all points or one for each. Then, for some of
+# them, what else could be different: the grid of the text, other boxes, the array turned.
 SWEEP_READINGS = (
     tuple(
         replace(velocity, shared=shared, likelihood=likelihood, spacing=0.1)
@@ -175,7 +175,7 @@ def figure4_readings():
     Returns
     -------
     list of tuple
-        SweepReading, score in nats, and the ends of its 95 % interval.
+        The reading, its score in nats, and the ends of its 95 % interval.
     """
     saved = json.loads((DATA / "ourfigure4_readings.json").read_text(encoding="utf-8"))
     rows = []
