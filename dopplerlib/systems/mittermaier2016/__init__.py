@@ -8,7 +8,7 @@ from .causes import Consistency, consistency_runs, matched_P0, switched_ekf
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
-from .noise_sweep import NOISE_LEVELS, Figure4, SweepReading, figure4
+from .noise_sweep import ERROR_LIMITS, NOISE_LEVELS, Figure4, SweepReading, figure4
 from .published import (
     PublishedFigure3,
     PublishedFigure4,
@@ -34,6 +34,7 @@ from .sweep_readings import (
 from .tracking import Figure6, figure6
 
 __all__ = [
+    "ERROR_LIMITS",
     "NOISE_LEVELS",
     "ORIENTATIONS",
     "SCORED_LEVELS",
