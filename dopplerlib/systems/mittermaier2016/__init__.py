@@ -19,6 +19,7 @@ from .published import (
     published_figure6,
     quoted,
     scenario,
+    signal_chain,
     table2,
 )
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
@@ -32,6 +33,7 @@ from .sweep_readings import (
     saved_figure4,
 )
 from .tracking import Figure6, figure6
+from .white_noise import WalkFilter, walk_filter
 
 __all__ = [
     "ERROR_LIMITS",
@@ -50,6 +52,7 @@ __all__ = [
     "Starts",
     "SweepReading",
     "Table2",
+    "WalkFilter",
     "comparable",
     "consistency_runs",
     "dots_log_likelihood",
@@ -74,9 +77,11 @@ __all__ = [
     "saved_figure4",
     "scenario",
     "shares_above",
+    "signal_chain",
     "start_box",
     "start_misfit",
     "switched_ekf",
     "table2",
     "table2_starts",
+    "walk_filter",
 ]
