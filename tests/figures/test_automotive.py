@@ -7,6 +7,8 @@ import pytest
 
 from dopplerlib.evaluation.intervals import Estimate
 from dopplerlib.figures import automotive as draw
+from dopplerlib.figures import automotive_beyond as draw_beyond
+from dopplerlib.figures import automotive_filter as draw_filter
 from dopplerlib.figures import automotive_waveforms as waves
 
 TIME = np.arange(6.0)
@@ -76,7 +78,7 @@ def test_three_panels_are_in_kilometers_per_hour():
     runs = SimpleNamespace(
         path=SimpleNamespace(truth=truth), z=truth[None] + 1, x=np.stack([truth, truth + 2])
     )
-    position, v_x, v_y = draw.three_panels(TIME, runs).axes
+    position, v_x, v_y = draw_filter.three_panels(TIME, runs).axes
     assert position.lines[2].get_xydata()[0].tolist() == [1.0, 2.0]
     assert v_x.lines[2].get_ydata() == pytest.approx(np.full(6, 36.0))
     assert v_y.lines[0].get_ydata() == pytest.approx(np.full(6, -4 * 3.6))
@@ -88,7 +90,7 @@ def test_a_claim_map_writes_percent_and_marks_our_choice():
     share = np.array([[0.0, 0.5], [1.0, 0.25]])
     rows, columns = ("sigma_p", (0.5, 1.0)), ("w", (0.01, 0.1))
     ours = SimpleNamespace(sigma_p=0.5, w=0.1)
-    figure = draw.claim_map(rows, columns, {str(i): share for i in range(4)}, ours)
+    figure = draw_filter.claim_map(rows, columns, {str(i): share for i in range(4)}, ours)
     ax = figure.axes[0]
     assert [text.get_text() for text in ax.texts] == ["0", "50", "100", "25"]
     assert ax.lines[0].get_xydata().tolist() == [[1.0, 0.0]]
@@ -99,7 +101,7 @@ def test_a_claim_map_writes_percent_and_marks_our_choice():
 def test_lags_carry_their_intervals():
     w = np.array([0.01, 0.1])
     measured = {0.01: (Estimate(0.5, 0.4, 0.6), Estimate(0.2, 0.1, 0.3))}
-    figure = draw.lags(w, np.ones((2, 2)), np.ones((2, 2)), measured)
+    figure = draw_filter.lags(w, np.ones((2, 2)), np.ones((2, 2)), measured)
     for ax, value in zip(figure.axes, (0.5, 0.2), strict=True):
         (points,) = ax.containers
         assert points.lines[0].get_ydata().tolist() == [value]
@@ -108,23 +110,23 @@ def test_lags_carry_their_intervals():
 
 def test_statistics_tracks_holes_and_models_keep_labels_and_units():
     pair = (TIME + 1, TIME + 2)
-    nis, nees = draw.nis_and_nees(TIME, {"a": pair}, ((3, 5), (2, 6))).axes
+    nis, nees = draw_filter.nis_and_nees(TIME, {"a": pair}, ((3, 5), (2, 6))).axes
     assert nis.lines[0].get_ydata()[0] == 1 and nees.lines[0].get_ydata()[0] == 2
     truth = np.ones((6, 4))
-    left, right = draw.side_by_side(TIME, truth, {"a": np.ones((12, 6, 4))}, (0, 3)).axes
+    left, right = draw_beyond.side_by_side(TIME, truth, {"a": np.ones((12, 6, 4))}, (0, 3)).axes
     assert len(left.lines) == 11 and left.get_ylim() == (0, 3)
     assert right.lines[0].get_ydata() == pytest.approx(np.full(6, 3.6))
-    left, right = draw.hole(TIME, {"a": TIME}, 0.2, {"b": TIME + 1}).axes
+    left, right = draw_beyond.hole(TIME, {"a": TIME}, 0.2, {"b": TIME + 1}).axes
     assert right.lines[0].get_xdata()[0] == 1  # the start is not an estimate
     turn = TIME > 3
-    assert len(draw.over_time(TIME, {"a": TIME + 1}, turn, "m").axes) == 1
-    top, below = draw.over_time(TIME, {"a": TIME + 1}, turn, "m", TIME / 6).axes
+    assert len(draw_beyond.over_time(TIME, {"a": TIME + 1}, turn, "m").axes) == 1
+    top, below = draw_beyond.over_time(TIME, {"a": TIME + 1}, turn, "m", TIME / 6).axes
     assert top.get_ylabel() == "m" and below.get_ylim() == (0, 1)
 
 
 def test_crossings_show_a_share_with_its_interval_at_every_angle():
     shares = {"a": [Estimate(0.5, 0.4, 0.6), Estimate(0.1, 0.0, 0.2)]}
     truth = np.zeros((2, 6, 4))
-    left, right = draw.crossings(truth, truth + 1, shares, (10, 20)).axes
+    left, right = draw_beyond.crossings(truth, truth + 1, shares, (10, 20)).axes
     assert len(left.lines) == 4
     assert right.containers[0].lines[0].get_xydata().tolist() == [[10, 0.5], [20, 0.1]]

@@ -5,7 +5,7 @@ import numpy as np
 from ...evaluation.intervals import mean_interval, quantile_interval, share_interval
 from ...evaluation.verdicts import Readings
 from ...model.polar_radar import polar_radar_jacobian
-from . import chain, crossing, lag, regions, tracking, waveforms
+from . import chain, crossing, lag, regions, tracking, two_tones, waveforms
 from .published import DATA, KMH, paths, settings
 
 CLAIMS = DATA / "claims.toml"
@@ -36,15 +36,15 @@ def _waveforms(rng):
     targets = np.array([[30.0, -5.0], [40.0, 4.0]])
     relations = np.stack([waveforms.chirp_relation(a * s.bandwidth / s.T) for a in (1, -1)])
     pairs, _ = waveforms.intersections(relations, [targets @ row for row in relations])
-    A = waveforms.mfsk_relations()
+    A = two_tones.mfsk_relations()
     shared = np.array([targets[0], [44.0, (A[0] @ targets[0] - A[0, 0] * 44.0) / A[0, 1]]])
 
     def mfsk_off(case, count):
-        pair = [waveforms.noisy(one, 20, rng=rng) for one in waveforms.mfsk(case)]
-        return np.abs(waveforms.mfsk_solve(*pair, count)[0, 0] - case[:, 0]).min()
+        pair = [waveforms.noisy(one, 20, rng=rng) for one in two_tones.mfsk(case)]
+        return np.abs(two_tones.mfsk_solve(*pair, count)[0, 0] - case[:, 0]).min()
 
     def fsk_off(v):
-        r, _ = waveforms.fsk_range(*waveforms.fsk([[30.0, v], [55.0, v]]))
+        r, _ = two_tones.fsk_range(*two_tones.fsk([[30.0, v], [55.0, v]]))
         return float(np.abs(r - [30, 55]).min())
 
     signal = waveforms.noisy(waveforms.rapid_chirps([[60.0, -60.0]]), 0, rng=rng)
