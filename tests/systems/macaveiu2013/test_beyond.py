@@ -49,10 +49,9 @@ def test_the_polar_filter_is_consistent_on_a_target_that_wanders_as_it_assumes()
 
 
 def test_the_range_rate_taken_for_the_velocity_stops_a_crossing_target():
-    """Naive speeds stay below 0.12 m/s, with a bound of 0.69, and alarms come by chance never.
+    """Naive speeds stay below 0.12 m/s, where the bound is 0.69.
 
-    Errors of 20 runs are 0.032 (0.003) m/s,
-    and the bound of 0.1 is more than 20 deviations away.
+    The error of 20 runs is 0.032 (0.003) m/s: its bound is 20 deviations away.
     """
     z = polar.measure(PATHS[8].truth, 20, rng=np.random.default_rng(3))
     middle = slice(230, 270)
@@ -124,7 +123,7 @@ def test_filter_and_smoother_of_the_comparison_are_the_library_s():
 
 
 def test_constant_acceleration_follows_the_turn_without_lag_and_pays_in_noise():
-    """The mean of 20 runs is 2.7 times the other one, with a deviation of 0.1: the bound, 12 away."""
+    """The mean of 20 runs is 2.7 (0.1) times the other one: the bound is 12 deviations away."""
     path = PATHS[10]
     still = maneuvers.ca(path.truth[None], q=0.01, a_max=1.45)[0]
     # The acceleration is known at the end, to what is left of the start.
@@ -137,7 +136,7 @@ def test_constant_acceleration_follows_the_turn_without_lag_and_pays_in_noise():
 
 
 def test_two_models_notice_the_hard_turn():
-    """Means of 20 runs are 0.84 and 0.32, with a deviation of 0.01: both bounds are 8 or more away."""
+    """Means of 20 runs are 0.84 (0.01) and 0.32 (0.01): both bounds are 8 deviations away."""
     path, turning = paper.hard_turn()
     z = tracking.measure(path.truth, 20, rng=np.random.default_rng(9))
     _, agile = maneuvers.two_models(z, (0.01, 0.055))
