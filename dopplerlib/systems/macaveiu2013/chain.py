@@ -101,7 +101,7 @@ def moves(z):
     ndarray of bool, shape (...)
         False for clutter: whatever has a range rate below that of one resolution cell.
     """
-    return np.abs(z[..., 2]) >= polar.polar()["v_min"]
+    return np.abs(z[..., 2]) >= polar.sensor()["v_min"]
 
 
 def objects(z):

@@ -104,7 +104,7 @@ def settings():
     return Settings(**file["sampling"], **file["noise"], **file["filter"], **file["score"], **radar)
 
 
-def polar():
+def sensor():
     """Return the noise of the polar sensor and its clutter rule, by name; all are ours.
 
     Returns

@@ -71,7 +71,7 @@ def test_a_scan_that_is_missing_is_predicted():
 def test_the_clutter_rule_deletes_the_crossing_target_and_no_one_that_recedes():
     """|x / r| < v_min / v: with v = 5 km/h and y = 20 m, |x| < 2.38 m, which takes 3.4 s."""
     hidden = {figure: chain.hidden(path.truth) for figure, path in PATHS.items()}
-    ratio = polar.polar()["v_min"] / (5 * paper.KMH)
+    ratio = polar.sensor()["v_min"] / (5 * paper.KMH)
     width = 2 * 20 * ratio / np.sqrt(1 - ratio**2)
     assert hidden[8].sum() == pytest.approx(width / (5 * paper.KMH) / S.T, abs=1)
     assert [hidden[figure].sum() for figure in (7, 9, 10)] == [0, 0, 0]
