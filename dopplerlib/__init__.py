@@ -29,6 +29,9 @@ _HOME = {
     "nees": "evaluation.consistency",
     "nis": "evaluation.consistency",
     "chi2_interval": "evaluation.consistency",
+    "average_interval": "evaluation.averages",
+    "effective_samples": "evaluation.averages",
+    "nees_samples": "evaluation.averages",
     "innovation_mean": "evaluation.whiteness",
     "innovation_whiteness": "evaluation.whiteness",
 }
