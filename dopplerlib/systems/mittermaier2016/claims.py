@@ -1,0 +1,29 @@
+"""Evidence on every claim of the paper, for the verdicts."""
+
+from ... import _checks
+from .claims_printed import printed_evidence
+from .claims_start import start_evidence
+from .claims_tracking import tracking_evidence
+
+
+def evidence(*, rng):
+    """Return our numbers for every claim of ``data/mittermaier2016/claims.toml``.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Source of all noise.
+
+    Returns
+    -------
+    dict
+        What `judge_all` takes, by the id of the claim.
+
+    Raises
+    ------
+    ValueError
+        If `rng` is not a generator.
+    """
+    _checks.generator("rng", rng)
+    start, tracking = rng.spawn(2)
+    return printed_evidence() | start_evidence(start) | tracking_evidence(tracking)
