@@ -43,7 +43,7 @@ def test_what_the_paper_quotes_is_what_is_judged():
     """The numbers of claims.toml and of table2.json were typed independently."""
     quoted, published = paper.quoted(), {c.id: c.published for c in claims_of(DOCUMENT)}
     assert published["nis-average"] == published["nis-average-drawn"] == quoted["nis_avg"]
-    assert published["nis-inside"] == 100 * quoted["fraction_nis_inside_95"]
+    assert published["nis-inside"] == pytest.approx(100 * quoted["fraction_nis_inside_95"])
     assert published["chi-square-interval"] == quoted["nis_bounds_95"]
     means = [published["innovation-low"], published["innovation-high"]]
     assert means == quoted["innovation_mean_range_hz"]
@@ -98,7 +98,7 @@ def test_one_sample_of_a_line_does_not_see_where_the_target_is_heading(place):
     # The information has a condition of 1e9 after scaling.
     np.testing.assert_allclose(bound, bound[0], rtol=1e-5)
     moving = crlb(x, array, 0.1, 10, 0.001, "moving", free=free)
-    assert np.ptp(np.log(moving[:, 0, 0] + moving[:, 1, 1])) > 0.5
+    assert np.ptp(np.log(moving[:, 0, 0] + moving[:, 1, 1])) > 0.2
 
 
 def test_the_drawn_error_of_z_at_the_first_sample_is_not_that_of_table_2():
