@@ -5,8 +5,9 @@ Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
 from .causes import Consistency, consistency_runs, matched_P0, switched_ekf
-from .error_map import ErrorMap, figure3, figure3_bound, shares_above
+from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
+from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
 from .published import (
     PublishedFigure3,
@@ -26,11 +27,13 @@ __all__ = [
     "Consistency",
     "ErrorMap",
     "Figure6",
+    "Figure6Readings",
     "PublishedFigure3",
     "PublishedFigure6",
     "Reading",
     "Starts",
     "Table2",
+    "comparable",
     "consistency_runs",
     "faulty_filters",
     "figure3",
@@ -38,17 +41,20 @@ __all__ = [
     "figure3_readings",
     "figure3_score",
     "figure6",
+    "figure6_readings",
     "linear_filter",
     "linear_world",
     "matched_P0",
     "published_figure3",
     "published_figure6",
     "quoted",
+    "ruled_out",
     "samples_needed",
     "scenario",
     "shares_above",
     "start_box",
     "start_misfit",
+    "still_counts",
     "switched_ekf",
     "table2",
     "table2_starts",

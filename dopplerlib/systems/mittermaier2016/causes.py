@@ -235,7 +235,7 @@ def _times(matrix, vector):
 
 
 def _missed(x, P, array):
-    """Return mean (..., N) and covariance (..., N, N) of what the tangent misses, to second order."""
+    """Return mean (..., N) and covariance (..., N, N) of the second-order term."""
     step = 1e-5 * np.eye(6)
     bend = doppler_jacobian(x[..., None, :] + step, array)
     bend = (bend - doppler_jacobian(x[..., None, :] - step, array)) / 2e-5

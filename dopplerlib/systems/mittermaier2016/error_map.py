@@ -148,6 +148,27 @@ def shares_above(error, limits, where):
     return np.stack([(error[where] > limit).mean(axis=0) for limit in limits])
 
 
+def comparable(published, panel):
+    """Return the places of Fig 3 at which an error can be compared, whichever way it is turned.
+
+    Parameters
+    ----------
+    published : PublishedFigure3
+        The digitized figure.
+    panel : int
+        0 for the left map, 1 for the right one.
+
+    Returns
+    -------
+    ndarray of bool, shape (39, 39)
+        Where the published error is known, or known to be small, and no sensor is: neither along
+        y, as printed, nor along x.
+    """
+    clear = _clear(_states(published, None), published.array).reshape(published.below.shape[1:])
+    known = ~np.isnan(published.error[panel]) | published.below[panel]
+    return known & clear & clear.T
+
+
 def _states(p, velocity):
     """Return the target at all places, shape (39 * 39, 6); y runs fastest."""
     v = p.velocity if velocity is None else _checks.finite("velocity", velocity, (3,))

@@ -70,6 +70,11 @@ class PublishedFigure3:
     lowest: float
     highest: float
 
+    @property
+    def shown(self):
+        """Errors for drawing, in m: `lowest` where only known to be below it."""
+        return np.where(self.below, self.lowest, self.error)
+
 
 @dataclass(frozen=True)
 class PublishedFigure6:

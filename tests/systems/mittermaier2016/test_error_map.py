@@ -165,6 +165,17 @@ def test_a_share_is_counted_over_the_places_that_count():
     assert_allclose(paper.shares_above(error, [0.05, 0.2, 1], where), [2 / 3, 1 / 3, 0])
 
 
+def test_places_can_be_compared_unless_hidden_or_on_a_sensor_either_way(published):
+    for panel in range(2):
+        where = paper.comparable(published, panel)
+        hidden = np.isnan(published.error[panel]) & ~published.below[panel]
+        for i, j in places(published, published.array.positions):
+            hidden[i, j] = hidden[j, i] = True
+        assert_array_equal(where, ~hidden)
+        assert_array_equal(published.shown[panel][where & published.below[panel]], 0.025)
+        assert not np.isnan(published.shown[panel][where]).any()
+
+
 def test_a_draw_does_not_depend_on_how_many_follow_it(one):
     first = paper.figure3(2, rng=np.random.default_rng(31))
     assert_array_equal(first.position, one.position[..., :2])

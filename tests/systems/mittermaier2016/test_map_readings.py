@@ -123,7 +123,8 @@ def test_neither_position_nor_state_gives_the_shares_of_the_right_map(published,
     """One is too small at 5 cm, the other too large at 20 cm, by more than all of our draws."""
     turn = paper.ORIENTATIONS["all turned"]
     position, state = turn(right["moving"].position), turn(right["moving"].state)
-    known = (~np.isnan(published.error[1]) | published.below[1]) & ~np.isnan(position[..., 0])
+    known = paper.comparable(published, 1)
+    assert not np.isnan(position[known]).any()
     theirs = paper.shares_above(published.error[1], [0.05, 0.2], known)
     assert paper.shares_above(position, [0.05], known).max() < theirs[0]
     assert paper.shares_above(state, [0.2], known).min() > theirs[1]

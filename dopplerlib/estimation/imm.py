@@ -1,0 +1,138 @@
+"""The interacting multiple model estimator: several Kalman filters that share one target."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _checks
+from .linear_kalman import _update
+
+
+@dataclass(frozen=True)
+class ImmTrack:
+    """Estimates of a record by several models, after the updates.
+
+    Attributes
+    ----------
+    x : ndarray, shape (..., K, n)
+        State estimates, the mean over the models.
+    P : ndarray, shape (..., K, n, n)
+        Their covariances, with the spread between the models.
+    mode : ndarray, shape (..., K, M)
+        Probability of each model.
+    """
+
+    x: np.ndarray
+    P: np.ndarray
+    mode: np.ndarray
+
+
+def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
+    """Filter whole records with several linear models between which the target may switch.
+
+    Every cycle mixes, predicts, then updates.
+
+    Parameters
+    ----------
+    z : array_like, shape (..., K, m)
+        Measurements.
+    F, Q : array_like, shape (M, n, n)
+        Transition matrix and process noise of each model; all have the same state.
+    H : array_like, shape (m, n)
+        Measurement matrix.
+    R : array_like, shape (m, m)
+        Covariance of the measurement noise.
+    transition : array_like, shape (M, M)
+        Probability to go from the model of the row to the model of the column in one step.
+    x0 : array_like, shape (..., n)
+        State one step before the first measurement; leading axes broadcast against those of `z`.
+    P0 : array_like, shape (..., n, n)
+        Its covariance.
+    mode0 : array_like, shape (M,), optional
+        Probabilities of the models one step before the first measurement; equal if None.
+
+    Returns
+    -------
+    ImmTrack
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite, a matrix is not a covariance, or probabilities
+        are negative or do not add to 1.
+
+    Notes
+    -----
+    Blom and Bar-Shalom (1988); Bar-Shalom, Li, Kirubarajan (2001), Sec 11.6.6. With one model it is
+    `kf`.
+
+    Examples
+    --------
+    A constant that may begin to wander:
+
+    >>> track = imm(
+    ...     [[0.0], [0.1], [9.0]], np.ones((2, 1, 1)), [[[0.0]], [[25.0]]], [[1]], [[1]],
+    ...     [[0.95, 0.05], [0.05, 0.95]], [0.0], [[1.0]],
+    ... )
+    >>> (track.mode[:, 1] > 0.5).tolist()
+    [False, False, True]
+    """
+    F = _checks.finite("F", F, (None, None, None))
+    M, n = F.shape[0], F.shape[-1]
+    if F.shape != (M, n, n):
+        raise ValueError(f"F must have shape (M, n, n), got {F.shape}")
+    Q = _checks.covariance("Q", Q, n, definite=False)
+    if Q.shape != (M, n, n):
+        raise ValueError(f"Q must have shape {(M, n, n)} like F, got {Q.shape}")
+    H = _checks.matrix("H", H, (None, n))
+    m = H.shape[0]
+    R = _checks.matrix("R", _checks.covariance("R", R, m), (m, m))
+    transition = _probabilities("transition", transition, (M, M))
+    mode0 = _probabilities("mode0", np.full(M, 1 / M) if mode0 is None else mode0, (M,))
+    z = _checks.finite("z", z, (None, m))
+    batch = z.shape[:-2]
+    x0 = _checks.each_run("x0", _checks.finite("x0", x0, (n,)), batch, (n,))
+    P0 = _checks.each_run("P0", _checks.covariance("P0", P0, n), batch, (n, n))
+
+    x = np.repeat(x0[..., None, :], M, axis=-2)
+    P = np.repeat(P0[..., None, :, :], M, axis=-3)
+    mode = np.broadcast_to(mode0, (*batch, M))
+    steps = []
+    for k in range(z.shape[-2]):
+        x, P, mode = _step(x, P, mode, z[..., k, :], F, Q, H, R, transition)
+        steps.append((*_moments(x, P, mode), mode))
+    return ImmTrack(*(np.stack(s, axis=len(batch)) for s in zip(*steps, strict=True)))
+
+
+def _step(x, P, mode, z, F, Q, H, R, transition):
+    # Joint probability of the model before (axis -2) and the model now (axis -1).
+    joint = mode[..., :, None] * transition
+    now = joint.sum(axis=-2)
+    # A model that cannot be reached keeps the state it had, with probability zero.
+    weight = np.where(now[..., None, :] > 0, joint, np.eye(len(transition)))
+    weight = np.swapaxes(weight / weight.sum(axis=-2, keepdims=True), -1, -2)
+    x, P = _moments(x[..., None, :, :], P[..., None, :, :, :], weight)
+
+    x = (F @ x[..., None])[..., 0]
+    P = F @ P @ np.swapaxes(F, -1, -2) + Q
+    x, P, innovation, S = _update(x, P, z[..., None, :], H, R)
+    nis = np.sum(innovation * np.linalg.solve(S, innovation[..., None])[..., 0], axis=-1)
+    log_likelihood = -(nis + np.linalg.slogdet(S)[1]) / 2
+    mode = now * np.exp(log_likelihood - log_likelihood.max(axis=-1, keepdims=True))
+    return x, P, mode / mode.sum(axis=-1, keepdims=True)
+
+
+def _moments(x, P, weight):
+    """Return mean and covariance of mixtures: x (..., M, n), P (..., M, n, n), weight (..., M)."""
+    mean = np.sum(weight[..., None] * x, axis=-2)
+    off = x - mean[..., None, :]
+    spread = P + off[..., :, None] * off[..., None, :]
+    return mean, np.sum(weight[..., None, None] * spread, axis=-3)
+
+
+def _probabilities(name, value, shape):
+    value = _checks.finite(name, value, shape)
+    off = np.abs(value.sum(axis=-1) - 1).max()
+    if value.ndim != len(shape) or (value < 0).any() or off > 1e-9:
+        raise ValueError(f"{name} must have rows of probabilities that add to 1, got {value}")
+    return value

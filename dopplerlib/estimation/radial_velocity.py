@@ -1,0 +1,152 @@
+"""A radial velocity as a sequential update of a position filter, as a pseudo-measurement."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _checks
+from .linear_kalman import _update
+
+
+@dataclass(frozen=True)
+class RadialVelocity:
+    """The terms of a radial-velocity update.
+
+    Attributes
+    ----------
+    H : ndarray, shape (..., 1, 2 n)
+        Measurement matrix [(A v)', Lambda].
+    C : ndarray, shape (..., 2 n, 2 n)
+        B P, from which bias and extra variance come.
+    R : ndarray, shape (..., 1, 1)
+        Variance of the measurement and of the neglected second order together.
+    predicted : ndarray, shape (..., 1)
+        What is expected to be measured, u.v plus the trace of C.
+    """
+
+    H: np.ndarray
+    C: np.ndarray
+    R: np.ndarray
+    predicted: np.ndarray
+
+
+def radial_velocity_terms(x, P, sigma, variance="corrected"):
+    """Return matrix, bias and variance with which a radial velocity updates a state.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 2 n)
+        Position, then velocity, in n dimensions and relative to the radar, in m and m/s. The
+        position must not be zero.
+    P : array_like, shape (..., 2 n, 2 n)
+        Covariance.
+    sigma : float or array_like, shape (...)
+        Standard deviation of the measured velocity in m/s.
+    variance : {"corrected", "printed"}
+        How the variance of the second order is computed: twice the trace of C C, which is
+        2 sum c_ij c_ji, or 2 sum c_ij^2 as Eq 3.22 prints it.
+
+    Returns
+    -------
+    RadialVelocity
+
+    Raises
+    ------
+    ValueError
+        If a shape does not fit, a value is not finite, `P` is not a covariance, the position is
+        zero, or `variance` is not one of the two.
+
+    Notes
+    -----
+    Åsheim (2015), Eqs 3.20 to 3.22, after Wang, He and Long (2003), with the printed square root
+    of Y'Y inverted: only then is Lambda a unit vector and H the derivative of u.v. B is that of
+    the text: half the second derivative between position and velocity, without the one in the
+    position twice. For a single radar in one dimension A, B and C vanish, and what is left is the
+    measurement of a component of the state.
+
+    Examples
+    --------
+    On a line the matrix picks the velocity, and nothing is neglected:
+
+    >>> terms = radial_velocity_terms([2.0, 0.1], np.eye(2), 0.1)
+    >>> terms.H.tolist(), terms.C.tolist(), terms.R.round(3).tolist()
+    ([[0.0, 1.0]], [[0.0, 0.0], [0.0, 0.0]], [[0.01]])
+    """
+    x = _checks.finite("x", x, (None,))
+    if x.shape[-1] % 2 or not x.shape[-1]:
+        raise ValueError(f"x must hold positions and velocities, got {x.shape[-1]} components")
+    P = _checks.covariance("P", P, x.shape[-1], definite=False)
+    sigma = _checks.deviation("sigma", sigma)
+    _checks.one_of("variance", variance, ("corrected", "printed"))
+    return _terms(x, P, sigma, variance)
+
+
+def radial_velocity_update(x, P, z, sigma, variance="corrected"):
+    """Return state and covariance after a measured radial velocity.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 2 n)
+        State after the position update: position, then velocity, relative to the radar.
+    P : array_like, shape (..., 2 n, 2 n)
+        Its covariance.
+    z : array_like, shape (...)
+        Measured radial velocity in m/s, positive when receding.
+    sigma : float or array_like, shape (...)
+        Its standard deviation in m/s.
+    variance : {"corrected", "printed"}
+        See `radial_velocity_terms`.
+
+    Returns
+    -------
+    x : ndarray, shape (..., 2 n)
+    P : ndarray, shape (..., 2 n, 2 n)
+    innovation : ndarray, shape (..., 1)
+    S : ndarray, shape (..., 1, 1)
+
+    Raises
+    ------
+    ValueError
+        As `radial_velocity_terms`, or if `z` is not finite.
+
+    Notes
+    -----
+    Åsheim (2015), Eqs 3.23 to 3.27, with the innovation z - trace(C) - h(x), as the code of the
+    thesis has it up to the first order, and the covariance in the form of Joseph.
+
+    Examples
+    --------
+    >>> x, P, innovation, S = radial_velocity_update([2.0, 0.0], np.eye(2), 0.2, 1.0)
+    >>> x.tolist(), innovation.tolist(), S.tolist()
+    ([2.0, 0.1], [0.2], [[2.0]])
+    """
+    z = _checks.finite("z", z)
+    x, P = _checks.finite("x", x, (None,)), _checks.real("P", P)
+    terms = radial_velocity_terms(x, P, sigma, variance)
+    return _update_with(x, P, z, terms)
+
+
+def _update_with(x, P, z, terms):
+    # kf_update forms z - H x: what it has to see is the innovation plus H x.
+    linear = (terms.H @ x[..., None])[..., 0]
+    shifted = z[..., None] - terms.predicted + linear
+    return _update(x, P, shifted, terms.H, terms.R)
+
+
+def _terms(x, P, sigma, variance):
+    n = x.shape[-1] // 2
+    Y, v = x[..., :n], x[..., n:]
+    d = np.linalg.norm(Y, axis=-1)
+    if not d.all():
+        raise ValueError("x must not have a position of zero, where no direction is radial")
+    u = Y / d[..., None]
+    A = (np.eye(n) - u[..., :, None] * u[..., None, :]) / d[..., None, None]
+    B = np.zeros(P.shape)
+    B[..., :n, n:] = B[..., n:, :n] = A / 2
+    C = B @ P
+    H = np.concatenate([(A @ v[..., None])[..., 0], u], axis=-1)[..., None, :]
+    other = np.swapaxes(C, -1, -2) if variance == "corrected" else C
+    extra = 2 * np.sum(C * other, axis=(-2, -1))
+    R = (sigma**2 + extra)[..., None, None]
+    predicted = np.einsum("...i,...i->...", u, v) + np.trace(C, axis1=-2, axis2=-1)
+    return RadialVelocity(H, C, R, predicted[..., None])

@@ -1,0 +1,145 @@
+"""How well a pulse radar measures: signal-to-noise ratio, resolution, and chance to detect."""
+
+import numpy as np
+
+from .. import _checks
+
+
+def linear_snr(d, at_zero, slope):
+    """Return a signal-to-noise ratio whose decibels fall linearly with the range.
+
+    Parameters
+    ----------
+    d : array_like, shape (...)
+        Range in m.
+    at_zero : float
+        Signal-to-noise ratio at range zero in dB.
+    slope : float
+        Loss in dB per meter.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Signal-to-noise ratio in dB.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite or not a number where it has to be one.
+
+    Notes
+    -----
+    Åsheim (2015), Eq 5.1. Decibels that fall linearly are a power that falls exponentially, as in
+    an absorbing medium; see `fourth_power_snr` for free space.
+
+    Examples
+    --------
+    >>> linear_snr([1.0, 2.0], at_zero=52, slope=12).tolist()
+    [40.0, 28.0]
+    """
+    d = _checks.finite("d", d)
+    return _checks.one_number("at_zero", at_zero) - d * _checks.one_number("slope", slope)
+
+
+def fourth_power_snr(d, at_one):
+    """Return the signal-to-noise ratio of the radar equation: 12 dB lost per doubling of range.
+
+    Parameters
+    ----------
+    d : array_like, shape (...)
+        Range in m, positive.
+    at_one : float
+        Signal-to-noise ratio at 1 m in dB.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Signal-to-noise ratio in dB.
+
+    Raises
+    ------
+    ValueError
+        If `d` is not positive or an argument is not finite.
+
+    Notes
+    -----
+    The echo of a small target in free space falls with the fourth power of the range.
+
+    Examples
+    --------
+    >>> fourth_power_snr([1.0, 10.0], at_one=42).tolist()
+    [42.0, 2.0]
+    """
+    return _checks.one_number("at_one", at_one) - 40 * np.log10(_checks.positive("d", d))
+
+
+def resolution_deviation(resolution, snr_db):
+    """Return the standard deviation of a measurement that resolves `resolution`.
+
+    Parameters
+    ----------
+    resolution : float
+        Resolution in m or m/s.
+    snr_db : array_like, shape (...)
+        Signal-to-noise ratio in dB.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Standard deviation, in the unit of the resolution.
+
+    Raises
+    ------
+    ValueError
+        If `resolution` is not positive or `snr_db` not finite.
+
+    Notes
+    -----
+    resolution / sqrt(2 SNR): Åsheim (2015), Eqs 5.4 and 5.6. It holds for a peak that stands
+    clearly above the noise. Near 0 dB and below, the largest peak is often one of the noise, and
+    the error is no longer small.
+
+    Examples
+    --------
+    >>> float(resolution_deviation(0.15, 20.0).round(4))
+    0.0106
+    """
+    resolution = _checks.positive_number("resolution", resolution)
+    return resolution / np.sqrt(2 * 10 ** (_checks.finite("snr_db", snr_db) / 10))
+
+
+def detection_probability(snr_db, false_alarm):
+    """Return the chance that one steady echo passes a threshold.
+
+    Parameters
+    ----------
+    snr_db : array_like, shape (...)
+        Signal-to-noise ratio after integration in dB.
+    false_alarm : float
+        Chance that noise alone passes the threshold.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Chance to detect.
+
+    Raises
+    ------
+    ValueError
+        If `snr_db` is not finite or `false_alarm` not between 0 and 1.
+
+    Notes
+    -----
+    Square-law detector of one pulse of unknown phase: the power is chi-square distributed with two
+    degrees of freedom, with noncentrality 2 SNR if there is an echo (the Q function of Marcum).
+
+    Examples
+    --------
+    >>> detection_probability([-100.0, 13.2], 1e-6).round(2).tolist()
+    [0.0, 0.9]
+    """
+    from scipy.stats import ncx2  # here: it takes longer to load than all the rest
+
+    snr_db = _checks.finite("snr_db", snr_db)
+    threshold = -2 * np.log(_checks.probability("false_alarm", false_alarm))
+    return ncx2.sf(threshold, 2, 2 * 10 ** (snr_db / 10))

@@ -1,0 +1,390 @@
+"""Evidence for the claims of ``data/asheim2015/claims.toml``."""
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.linear_kalman import _predict, _update
+from ...estimation.radial_velocity import radial_velocity_terms, radial_velocity_update
+from ...evaluation.intervals import share_interval
+from ...evaluation.range_bounds import range_crlb
+from ...evaluation.verdicts import Draws, Readings
+from ...model.range_rate import range_rate, range_rate_jacobian
+from ...model.ranging_noise import detection_probability
+from .measures import departure, distance_error, over_runs, usable_range
+from .one_radar import filter_radar
+from .published import deviations, quoted, scenario, settings, snr
+from .scene import maneuver_track, radars, simulate, straight_track
+from .stand_in import WALKS, walk
+from .two_radars import (
+    error_area,
+    filter_then_triangulate,
+    polar_jacobian,
+    raw_positions,
+    triangulate,
+)
+
+LONG = 60.0  # s: a record long enough for every track of the fixed gate to be left
+
+
+def evidence(*, rng, runs=200):
+    """Return our numbers for every claim.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Source of all randomness.
+    runs : int
+        Number of simulated records.
+
+    Returns
+    -------
+    dict
+        Evidence by the id of the claim.
+    """
+    _checks.generator("rng", rng)
+    simulated, walked, resampled = rng.spawn(3)
+    return {
+        **settings_and_formulas(),
+        **one_radar(runs, simulated, resampled),
+        **two_radars(runs, simulated, resampled),
+        **real_radars(runs, walked),
+    }
+
+
+def settings_and_formulas():
+    """Return the evidence that follows from the printed settings and formulas alone.
+
+    Returns
+    -------
+    dict
+    """
+    s, q = scenario(), quoted()
+    n = s["noise"]
+    code, text = settings("code"), settings("text")
+    ends = [track(np.array([s["tracks"]["duration"]]))[0, :2]
+            for track in (straight_track, maneuver_track)]  # fmt: skip
+    corner = np.abs(error_area(snr_db=s["error_area"]["snr"]) - s["error_area"]["position"])
+    front = s["error_area"]["position"]
+    wavelengths = {
+        "c / f": n["speed_of_light"] / n["frequency"],
+        "code": q["noise"]["wavelength_code"],
+        "printed": q["noise"]["wavelength_printed"],
+    }
+    velocities = {name: one / (2 * n["integration"]) for name, one in wavelengths.items()}
+    at = np.hypot(*(np.array(front) - radars()).T)
+    return {
+        "range-variance": float(code.R(1.0)[0]),
+        "process-noise": np.diag(code.Q),
+        "wavelength": wavelengths["c / f"],
+        "velocity-resolution": Readings(velocities),
+        "range-resolution": n["speed_of_light"] * 10.0 ** q["noise"]["pulse_exponent_printed"] / 2,
+        "snr-at-one": float(snr(1.0)),
+        "speed": float(np.hypot(*s["tracks"]["velocity"])),
+        "straight-end": float(np.hypot(*ends[0])),
+        "maneuver-end": ends[1],
+        "maneuver-distance": float(np.hypot(*ends[1])),
+        "both-axes": float(np.hypot(q["range"]["axis"], q["range"]["axis"])),
+        "error-area": corner.max(axis=0),
+        "error-area-snr": float(snr(at).mean()),
+        "shared-integration": 1 - s["tracks"]["T"] / n["integration"],
+        "detection": float(
+            detection_probability(snr(q["range"]["fused"]), s["detection"]["false_alarm"])
+        ),
+        "R2-approaches": float(range_rate(straight_track([0.0]), radars())[0, 1, 1]),
+        "R1-distance": _range_at(0, q["departure"]["R1_time"]),
+        "R2-distance": _range_at(1, q["departure"]["R2_time"]),
+        "real-range": q["range"]["real_conclusion"],
+        "gate-grows": gate_growth(text),
+        "directional-cosine": _printed_cosine(),
+        "extra-variance": _extra_variance_ratio(),
+        "pseudo-innovation": _printed_pseudo_innovation(),
+        "table-3-2": _printed_angle_innovation(),
+        "difference-bias": _difference_bias(),
+        "baseline": float(np.sqrt(_across(s["real"]["baseline"]) / _across(None))),
+        "closest-radar": _influence_ratio(),
+    }
+
+
+def one_radar(runs, rng, resampling):
+    """Return the evidence on the path of a single radar.
+
+    Parameters
+    ----------
+    runs : int
+        Number of records.
+    rng, resampling : numpy.random.Generator
+        Sources of the noise and of the bootstrap.
+
+    Returns
+    -------
+    dict
+    """
+    records = simulate(runs, rng=rng, duration=LONG)
+    code, no_gate = settings("code"), settings("code", gate=None)
+    z = records.z[..., None, :]
+    gated, free = filter_radar(z, code), filter_radar(z, no_gate)
+    t, truth = records.time, records.ranges[..., 0]
+    raw = records.z[..., 0] - truth
+    error = gated.x[..., 0] - truth
+    short = t <= 45.0
+    z, t45 = z[:, :, short], t[short]
+    plain = {
+        name: filter_radar(z, settings(name), doppler=False).x[..., 0] - truth[:, short]
+        for name in ("code", "text")
+    }
+    twice = filter_radar(z[:, :, t45 <= 5], code, reuse_first=True).x[..., 0]
+    twice = twice - truth[:, t <= 5]
+
+    def ratio(a, b, ta, tb, low, high, radar):
+        a, b = _squares(a[:, radar], ta, low, high), _squares(b[:, radar], tb, low, high)
+        return _rms_ratio(a, b, resampling)
+
+    times = departure(gated.updated, t)
+    ekf_step = _largest_step_difference(records.z[0, 0, :300], code)
+    return {
+        "kf-improves": Readings(
+            {name: ratio(e, raw, t45, t, 20, 30, 0) for name, e in plain.items()}
+        ),
+        "doppler-R1": ratio(error, plain["code"], t, t45, 5, 40, 0),
+        "doppler-R2": ratio(error, plain["code"], t, t45, 5, 40, 1),
+        "R1-departs": Draws(times[:, 0]),
+        "R1-in-range": Draws(times[:, 0]),
+        "R2-departs": Draws(times[:, 1]),
+        "good-snr-R1": ratio(error, raw, t, t, 0, 10, 0),
+        "good-snr-R2": ratio(error, raw, t, t, 0, 10, 1),
+        "follows-R1": ratio(free.x[..., 0] - truth, error, t, t, 49, 50, 0),
+        "follows-R2": ratio(free.x[..., 0] - truth, error, t, t, 49, 50, 1),
+        "first-used-twice": ratio(twice, error, t45[t45 <= 5], t, 0, 5, 0),
+        "ekf-needed": ekf_step,
+    }
+
+
+def two_radars(runs, rng, resampling):
+    """Return the evidence on the triangulated position.
+
+    Parameters
+    ----------
+    runs : int
+        Number of records.
+    rng, resampling : numpy.random.Generator
+        Sources of the noise and of the bootstrap.
+
+    Returns
+    -------
+    dict
+    """
+    q = quoted()
+    records = simulate(runs, rng=rng)
+    t, truth, d = records.time, records.truth, records.distance
+    fused = filter_then_triangulate(records, settings("code"))
+    error = distance_error(fused.p, truth)
+    raw = raw_positions(records)
+    raw_error = distance_error(raw.p, truth)
+    gated_raw = distance_error(raw_positions(records, fused.updated).p, truth)
+    no_gate = {
+        name: distance_error(filter_then_triangulate(records, settings(name, gate=None)).p, truth)
+        for name in ("code", "text")
+    }
+    text = distance_error(filter_then_triangulate(records, settings("text")).p, truth)
+    plain = filter_then_triangulate(records, settings("code"), doppler=False)
+    plain = distance_error(plain.p, truth)
+    at = int(np.argmin(np.hypot(*(truth[:, :2] - q["range"]["compared"]).T)))
+    x_error = np.abs(raw.p[:, at, 0] - truth[at, 0])
+    late = (t >= 40) & (t < 50)
+
+    def ratio(a, b, low, high):
+        return _rms_ratio(_squares(a, t, low, high), _squares(b, t, low, high), resampling)
+
+    def first_beyond(e):
+        return np.minimum([usable_range(one[None], t, d) for one in e], d[-1])
+
+    ranges = over_runs(
+        lambda a, b: usable_range(b, t, d) / usable_range(a, t, d), error, raw_error,
+        rng=resampling,
+    )  # fmt: skip
+    total, count = _squares(raw_error, t, 31, 33)
+    return {
+        "useful-range": Draws(first_beyond(error)),
+        "raw-range": ranges,
+        "raw-at-four": Draws(x_error),
+        "raw-beyond-four": Draws(np.sqrt(total / count)),
+        "gate-triangulation": ratio(no_gate["code"], error, 44, 46),
+        "gate-triangulation-text": ratio(no_gate["text"], text, 44, 46),
+        "gate-measurements": ratio(raw_error, gated_raw, 44, 46),
+        "doppler-position": ratio(error, plain, 25, 40),
+        "circles-meet": share_interval(raw.valid[:, late][:, ::20].ravel()),
+    }
+
+
+def real_radars(runs, rng):
+    """Return what the SIMULATED stand-in says on the claims of Chapter 6.
+
+    Parameters
+    ----------
+    runs : int
+        Number of records.
+    rng : numpy.random.Generator
+        Source of randomness.
+
+    Returns
+    -------
+    dict
+    """
+    s = scenario()["real"]
+    code = settings("code", s["T"])
+    found, kept, dropped = {}, {}, []
+    for variant, child in zip(WALKS, rng.spawn(2), strict=True):
+        w = walk(runs, rng=child, variant=variant)
+        track = filter_radar(w.detections, code, x0=_guess(w))
+        k = round(s["back"] / s["T"])
+        again = np.abs(track.x[..., 0] - w.ranges[..., 0])[:, 0, k + 3 : k + 9].max(axis=-1)
+        found[variant] = share_interval(again < code.box[0])
+        kept[variant] = w, track
+        other = filter_radar(w.detections, code, association="nearest-first", x0=_guess(w))
+        dropped.append((track.updated & ~other.updated).any(axis=(1, 2)))
+    w, track = kept[WALKS[0]]
+    p, _ = triangulate(track.x[:, 0, :, 0], track.x[:, 1, :, 0], s["baseline"])
+    raw, _ = triangulate(track.chosen[:, 0, :, 0], track.chosen[:, 1, :, 0], s["baseline"])
+    off, raw_off = distance_error(p, w.truth), distance_error(raw, w.truth)
+    before = w.time < s["gone"]
+    y = w.truth[:, 1]
+    near = before & (y < 2.4)
+    two_to_three = before & (y >= 2) & (y <= 3)
+    four = before & (np.abs(y - 4) < 0.2)
+    return {
+        "reacquired": Readings(found),
+        "error-near": Draws(np.mean(off[:, near], axis=1)),
+        "raw-near": Draws(np.nanmean(raw_off[:, two_to_three], axis=1)),
+        "raw-worst": Draws(np.nanmax(np.where(before, raw_off, np.nan), axis=1)),
+        "error-at-four": Draws(np.mean(off[:, four], axis=1)),
+        "nearest-of-validated": share_interval(np.concatenate(dropped)),
+    }
+
+
+def gate_growth(own, early=2, late=450):
+    """Return how much the half-width of the printed gate grows while the covariance settles.
+
+    Parameters
+    ----------
+    own : Settings
+        Settings of the filter.
+    early, late : int
+        Scans that are compared; between them the last hundred have no measurement.
+
+    Returns
+    -------
+    float
+        Half-width at `late` over that at `early`.
+
+    Notes
+    -----
+    Eqs 4.3 and 4.6: an innovation passes if its square over S is below c sigma over S.
+    """
+    c, sigma = (scenario()["filter"][name] for name in ("c", "sigma_range"))
+    F = np.array([[1.0, own.T], [0.0, 1.0]])
+    P, widths = own.P0, []
+    for k in range(late + 1):
+        _, P = _predict(np.zeros(2), P, F, own.Q)
+        S = P[0, 0] + own.R(1.0)[0]
+        widths.append(np.sqrt(c * sigma / S * S))
+        if k < late - 100:
+            _, P, _, _ = _update(np.zeros(2), P, np.zeros(2), np.eye(2), np.diag(own.R(1.0)))
+    return round(float(widths[late] / widths[early]), 9)
+
+
+def _guess(w):
+    """Return the start of the thesis's code for one radar, or the truth of the walk for two."""
+    if len(w.sensors) == 1:
+        return np.array(scenario()["real"]["guess"])
+    return w.ranges[:, 0].mean(axis=0)
+
+
+def _range_at(radar, time):
+    return float(range_rate(straight_track([time]), radars())[0, radar, 0])
+
+
+def _across(baseline):
+    sensors = radars(baseline)
+    p = np.array(scenario()["error_area"]["position"])
+    sigma = deviations(np.hypot(*(p - sensors).T))[:, 0]
+    return range_crlb(p, sensors, sigma)[0, 0]
+
+
+def _influence_ratio():
+    """Return how far a position follows the far radar's range, over how far the near one's."""
+    p = np.array([*quoted()["range"]["compared"], 0.0, 0.0])
+    follows = np.linalg.inv(range_rate_jacobian(p, radars())[:, 0, :2])
+    far, near = np.linalg.norm(follows, axis=0)
+    return round(float(far / near), 9)
+
+
+def _printed_cosine():
+    Y = np.array(quoted()["range"]["compared"])
+    return float(np.linalg.norm(np.sqrt(Y @ Y) * Y))
+
+
+def _example():
+    """Return a state in the plane and its covariance, in the middle of the straight track."""
+    x = straight_track([scenario()["tracks"]["duration"] / 2])[0]
+    return x, np.diag([0.2, 0.1, 0.05, 0.1]) ** 2
+
+
+def _extra_variance_ratio():
+    x, P = _example()
+    right, printed = (
+        radial_velocity_terms(x, P, 1.0, variance=name).R[0, 0] - 1.0
+        for name in ("corrected", "printed")
+    )
+    return float(printed / right)
+
+
+def _printed_pseudo_innovation():
+    """Return the innovation of Eq 3.25 for a measurement that is exactly as predicted."""
+    x, P = _example()
+    terms = radial_velocity_terms(x, P, 1.0)
+    return float(terms.predicted[0] - np.trace(terms.C))
+
+
+def _printed_angle_innovation():
+    """Return alpha - H x, the innovation of Table 3.2 for an angle exactly as predicted."""
+    x, _ = _example()
+    return float(np.arctan2(x[1], x[0]) - polar_jacobian(x)[1] @ x)
+
+
+def _difference_bias():
+    """Return the error of a rate from differences at the first scan, in deviations of its noise."""
+    T = scenario()["tracks"]["T"]
+    first, second = range_rate(straight_track([0.0, T]), radars()[:1])[:, 0]
+    return float(((second[0] - first[0]) / T - first[1]) / deviations(first[0])[1])
+
+
+def _largest_step_difference(z, own):
+    """Return how far the pseudo-measurement filter is from a linear one, over a record, in m."""
+    x = x_pseudo = z[0]
+    P = P_pseudo = own.P0
+    F, R = np.array([[1.0, own.T], [0.0, 1.0]]), np.diag(own.R(1.0))
+    largest = 0.0
+    for one in z[1:]:
+        x, P, _, _ = _update(*_predict(x, P, F, own.Q), one, np.eye(2), R)
+        x_pseudo, P_pseudo = _predict(x_pseudo, P_pseudo, F, own.Q)
+        x_pseudo, P_pseudo, _, _ = _update(x_pseudo, P_pseudo, one[:1], np.eye(2)[:1], R[:1, :1])
+        x_pseudo, P_pseudo, _, _ = radial_velocity_update(
+            x_pseudo, P_pseudo, one[1], np.sqrt(R[1, 1])
+        )
+        largest = max(largest, float(np.abs(x - x_pseudo).max()))
+    return round(largest, 9)
+
+
+def _squares(error, time, low, high):
+    """Return sum and number of squares of each run between two times, NaN left out."""
+    there = error[:, (time >= low) & (time <= high)]
+    return np.nansum(np.square(there), axis=-1), np.isfinite(there).sum(axis=-1)
+
+
+def _rms_ratio(a, b, rng):
+    return over_runs(
+        lambda sa, na, sb, nb: np.sqrt(sa.sum() / na.sum() / (sb.sum() / nb.sum())),
+        *a,
+        *b,
+        rng=rng,
+    )

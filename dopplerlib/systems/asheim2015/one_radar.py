@@ -1,0 +1,140 @@
+"""The path of one radar: gate, nearest neighbor, Kalman filter (Chapters 3 and 4)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.linear_kalman import _predict, _update
+from ...tracking.association import nearest_neighbor
+from ...tracking.gates import chi2_gate, fixed_box_gate
+from .published import Settings
+
+
+@dataclass(frozen=True)
+class RadarTrack:
+    """What the filter of one radar makes of its detections.
+
+    Attributes
+    ----------
+    x : ndarray, shape (..., K, 2)
+        Estimates of range in m and range rate in m/s.
+    P : ndarray, shape (..., K, 2, 2)
+        Their covariances as the filter believes them.
+    chosen : ndarray, shape (..., K, 2)
+        The detection that was used; NaN where none was.
+    updated : ndarray of bool, shape (..., K)
+        Whether a detection was used. The first scan starts the track and counts as used.
+    nis : ndarray, shape (..., K)
+        Normalized innovation squared of the detection nearest to the prediction, inside the gate
+        or not; NaN where there was no detection, and at the first scan.
+    """
+
+    x: np.ndarray
+    P: np.ndarray
+    chosen: np.ndarray
+    updated: np.ndarray
+    nis: np.ndarray
+
+
+def filter_radar(
+    detections, settings, *, doppler=True, association="gate-first", reuse_first=False, x0=None
+):
+    """Run gate, nearest neighbor and Kalman filter over records of one radar.
+
+    Parameters
+    ----------
+    detections : array_like, shape (..., K, M, 2)
+        Range in m and range rate in m/s of up to M detections in each of K scans; NaN where there
+        is none.
+    settings : Settings
+        How the filter is set, see `settings`.
+    doppler : bool
+        Whether the range rate updates the filter. It is gated in any case, as in the code.
+    association : {"gate-first", "nearest-first"}
+        "gate-first": the nearest of the detections inside the gate, by NIS, as the text says;
+        "nearest-first": the nearest in range alone, dropped if it is outside, as the code does.
+    reuse_first : bool
+        Whether the first detection starts the filter and then updates it once more, as the code
+        does. If not, it only starts it.
+    x0 : array_like, shape (2,) or (..., 2), optional
+        Start where the first scan is empty.
+
+    Returns
+    -------
+    RadarTrack
+
+    Raises
+    ------
+    ValueError
+        If a shape or a name does not fit, or a first scan is empty and no `x0` is given.
+
+    Notes
+    -----
+    Åsheim (2015), Appendix A.5 to A.7, with covariances in the form of Joseph. The range and the
+    range rate are independent, so that both at once is the same as one after the other.
+    """
+    z = _checks.real("detections", detections)
+    _checks.check_shape("detections", z, (None, None, 2))
+    _checks.instance("settings", settings, Settings)
+    _checks.one_of("association", association, ("gate-first", "nearest-first"))
+    batch, K = z.shape[:-3], z.shape[-3]
+    x = _start(z[..., 0, :, :], x0)
+    P = np.broadcast_to(settings.P0, (*batch, 2, 2))
+    F = np.array([[1.0, settings.T], [0.0, 1.0]])
+    H = np.eye(2)[: 2 if doppler else 1]
+    steps = []
+    for k in range(K):
+        if k == 0 and not reuse_first:
+            steps.append((x, P, x, np.ones(batch, bool), np.full(batch, np.nan)))
+            continue
+        x, P = _predict(x, P, F, settings.Q)
+        R = settings.R(x[..., 0])[..., None] * np.eye(2)
+        nu = z[..., k, :, :] - x[..., None, :]
+        nis, accept = _gate(nu, P, R, settings, 2 if doppler else 1)
+        if k == 0:
+            accept = np.isfinite(nis)
+        if association == "gate-first":
+            index = nearest_neighbor(nis, accept)
+        else:
+            index = nearest_neighbor(np.abs(nu[..., 0]), np.isfinite(nis))
+        picked = np.maximum(index, 0)[..., None]
+        used = (index >= 0) & np.take_along_axis(accept, picked, -1)[..., 0]
+        chosen = np.take_along_axis(z[..., k, :, :], picked[..., None], -2)[..., 0, :]
+        chosen = np.where(used[..., None], chosen, np.nan)
+        m = len(H)
+        measured = np.where(used[..., None], chosen, 0.0)[..., :m]
+        xu, Pu, _, _ = _update(x, P, measured, H, R[..., :m, :m])
+        x = np.where(used[..., None], xu, x)
+        P = np.where(used[..., None, None], Pu, P)
+        with np.errstate(invalid="ignore"):
+            least = np.fmin.reduce(nis, axis=-1)
+        steps.append((x, P, chosen, used, least))
+    stacked = (np.stack(part, axis=len(batch)) for part in zip(*steps, strict=True))
+    return RadarTrack(*stacked)
+
+
+def _gate(nu, P, R, settings, m):
+    S = (P + R)[..., None, :m, :m]
+    within = nu[..., :m]
+    there = np.isfinite(nu).all(axis=-1)
+    solved = np.linalg.solve(S, np.where(there[..., None], within, 0.0)[..., None])[..., 0]
+    nis = np.where(there, np.sum(within * solved, axis=-1), np.nan)
+    if settings.gate == "box":
+        return nis, fixed_box_gate(nu, settings.box)
+    if settings.gate == "nis":
+        return nis, chi2_gate(nis, m, settings.gate_probability)
+    return nis, there
+
+
+def _start(z, x0):
+    """Return the first detection of the first scan (..., 2), or `x0` where there is none."""
+    there = np.isfinite(z).all(axis=-1)
+    index = np.argmax(there, axis=-1)[..., None, None]
+    first = np.take_along_axis(z, index, -2)[..., 0, :]
+    empty = ~there.any(axis=-1)
+    if not empty.any():
+        return first
+    if x0 is None:
+        raise ValueError("x0 must be given where the first scan is empty, got None")
+    return np.where(empty[..., None], _checks.finite("x0", x0, (2,)), first)

@@ -1,0 +1,1 @@
+"""Many detections and many targets: gates, association, and the life of a track."""

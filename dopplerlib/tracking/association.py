@@ -1,0 +1,144 @@
+"""Which detection belongs to which track."""
+
+import numpy as np
+
+from .. import _checks
+
+
+def nearest_neighbor(distance, accept=None):
+    """Return the nearest of the detections that are accepted.
+
+    Parameters
+    ----------
+    distance : array_like, shape (..., D)
+        Distances of D detections from a track, or their squares.
+    accept : array_like of bool, shape (..., D), optional
+        Whether a detection passed the gate; all did if None.
+
+    Returns
+    -------
+    ndarray of int, shape (...)
+        Index of the detection, -1 where there is none.
+
+    Raises
+    ------
+    ValueError
+        If `distance` is not made of real numbers or `accept` does not fit it.
+
+    Notes
+    -----
+    Each track decides on its own: two tracks may take the same detection. `gnn_assign` does not
+    allow that.
+
+    Examples
+    --------
+    >>> nearest_neighbor([[3.0, 1.0, 2.0]] * 2, [[True, False, True], [False] * 3]).tolist()
+    [2, -1]
+    """
+    distance = _checks.real("distance", distance)
+    _checks.check_shape("distance", distance, (None,))
+    accept = np.ones(distance.shape, bool) if accept is None else np.asarray(accept)
+    if accept.dtype != bool or accept.shape != distance.shape:
+        raise ValueError(
+            f"accept must be made of booleans, of shape {distance.shape} like distance, "
+            f"got {accept.dtype} of shape {accept.shape}"
+        )
+    distance = np.where(accept & ~np.isnan(distance), distance, np.inf)
+    if not distance.shape[-1]:
+        return np.full(distance.shape[:-1], -1)
+    nearest = distance.argmin(axis=-1)
+    return np.where(np.isfinite(distance.min(axis=-1)), nearest, -1)
+
+
+def greedy_assign(cost, gate):
+    """Return an assignment that takes the cheapest pair first, then the cheapest of the rest.
+
+    Parameters
+    ----------
+    cost : array_like, shape (tracks, detections)
+        Cost of each pair; NaN or infinite for one that is out of the question.
+    gate : float
+        Largest cost of a pair that is allowed.
+
+    Returns
+    -------
+    ndarray of int, shape (tracks,)
+        Detection of each track, -1 where it has none.
+
+    Raises
+    ------
+    ValueError
+        If `cost` is not a matrix of real numbers, or `gate` is not finite.
+
+    Notes
+    -----
+    "Nearest neighbor" for several tracks, such that none takes what another has.
+
+    Examples
+    --------
+    The first pair takes what the second track would have needed:
+
+    >>> greedy_assign([[1.0, 2.0], [2.0, 8.0]], gate=5.0).tolist()
+    [0, -1]
+    """
+    cost, gate = _costs(cost, gate)
+    assigned = np.full(len(cost), -1)
+    open_pairs = cost.copy()
+    while open_pairs.size and open_pairs.min() <= gate:
+        track, detection = np.unravel_index(open_pairs.argmin(), cost.shape)
+        assigned[track] = detection
+        open_pairs[track, :] = open_pairs[:, detection] = np.inf
+    return assigned
+
+
+def gnn_assign(cost, gate):
+    """Return the assignment of least total cost: the global nearest neighbor.
+
+    Parameters
+    ----------
+    cost : array_like, shape (tracks, detections)
+        Cost of each pair, for example its NIS; NaN or infinite for one that is out of the question.
+    gate : float
+        Largest cost of a pair that is allowed, and what a track without a detection costs.
+
+    Returns
+    -------
+    ndarray of int, shape (tracks,)
+        Detection of each track, -1 where it has none.
+
+    Raises
+    ------
+    ValueError
+        If `cost` is not a matrix of real numbers, or `gate` is not finite.
+
+    Notes
+    -----
+    The linear assignment problem, for which Kuhn (1955) gave the Hungarian algorithm; solved by
+    `scipy.optimize.linear_sum_assignment`, with one column more for each track to stay alone.
+
+    Examples
+    --------
+    Each track for itself would take the first detection; together they do better:
+
+    >>> gnn_assign([[1.0, 2.0], [2.0, 8.0]], gate=5.0).tolist()
+    [1, 0]
+    """
+    from scipy.optimize import linear_sum_assignment  # here: it takes long to load
+
+    cost, gate = _costs(cost, gate)
+    tracks, detections = cost.shape
+    # More than all tracks alone: such a pair is never part of the cheapest assignment.
+    forbidden = (abs(gate) + 1) * (2 * tracks + 2)
+    pairs = np.where(cost <= gate, cost, forbidden)
+    alone = np.where(np.eye(tracks, dtype=bool), gate, forbidden)
+    row, column = linear_sum_assignment(np.hstack([pairs, alone]))
+    assigned = np.full(tracks, -1)
+    assigned[row] = np.where(column < detections, column, -1)
+    return assigned
+
+
+def _costs(cost, gate):
+    cost = _checks.real("cost", cost)
+    if cost.ndim != 2:
+        raise ValueError(f"cost must have shape (tracks, detections), got {cost.shape}")
+    return np.where(np.isnan(cost), np.inf, cost), _checks.one_number("gate", gate)

@@ -1,0 +1,81 @@
+"""Which measurements may belong to a track."""
+
+import numpy as np
+
+from .. import _checks
+
+
+def chi2_gate(nis, m, probability):
+    """Return where a measurement is inside the gate of this probability.
+
+    Parameters
+    ----------
+    nis : array_like, shape (...)
+        Normalized innovation squared; NaN where nothing was measured.
+    m : int
+        Number of components of the measurement.
+    probability : float
+        Probability with which the measurement of the target itself is inside.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+        False where `nis` is NaN.
+
+    Raises
+    ------
+    ValueError
+        If `nis` is not made of real numbers, `m` is not a positive whole number, or `probability`
+        is not between 0 and 1.
+
+    Notes
+    -----
+    Bar-Shalom, Li, Kirubarajan (2001): the gate is an ellipsoid, the quantile of the
+    chi-square distribution with `m` degrees of freedom its size.
+
+    Examples
+    --------
+    >>> chi2_gate([5.9, 6.0, np.nan], m=2, probability=0.95).tolist()
+    [True, False, False]
+    """
+    from scipy.special import chdtri  # here: it takes longer to load than all the rest
+
+    nis = _checks.real("nis", nis)
+    m = _checks.whole_number("m", m)
+    return nis <= chdtri(m, 1 - _checks.probability("probability", probability))
+
+
+def fixed_box_gate(innovation, half_widths):
+    """Return where every component of the innovation is inside a box of fixed size.
+
+    Parameters
+    ----------
+    innovation : array_like, shape (..., m)
+        Measurement minus predicted measurement; NaN where nothing was measured.
+    half_widths : array_like, shape (m,)
+        Half the size of the box along each component, in the units of the measurement.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+        False where a component is NaN.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, or a half-width is not positive.
+
+    Notes
+    -----
+    The box knows nothing of how sure the track is: what it lets through is a design choice, not a
+    probability.
+
+    Examples
+    --------
+    >>> fixed_box_gate([[0.5, 0.1], [0.5, 0.3]], [1.0, 0.2]).tolist()
+    [True, False]
+    """
+    half_widths = _checks.positive("half_widths", half_widths, (None,))
+    innovation = _checks.real("innovation", innovation)
+    _checks.check_shape("innovation", innovation, half_widths.shape)
+    return (np.abs(innovation) <= half_widths).all(axis=-1)

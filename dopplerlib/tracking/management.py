@@ -1,0 +1,111 @@
+"""The life of a track: tentative at first, confirmed by repeated detections, deleted at the end."""
+
+from dataclasses import dataclass, replace
+
+from .. import _checks
+
+TENTATIVE, CONFIRMED, DELETED = "tentative", "confirmed", "deleted"
+
+
+@dataclass(frozen=True)
+class TrackLife:
+    """Where a track stands in its life.
+
+    Attributes
+    ----------
+    status : {"tentative", "confirmed", "deleted"}
+        What the track is good for.
+    recent : tuple of bool
+        Whether it was detected in each of the last scans, up to the window of its manager.
+    age : int
+        Number of scans since the detection that started it, which counts as one.
+    misses : int
+        Number of scans in a row without a detection.
+    """
+
+    status: str
+    recent: tuple
+    age: int
+    misses: int
+
+
+@dataclass(frozen=True)
+class TrackManager:
+    """The rules by which tracks are confirmed and deleted.
+
+    Parameters
+    ----------
+    hits, window : int
+        A tentative track is confirmed once it has `hits` detections among the last `window` scans
+        ("M of N"). It is deleted when it is `window` scans old and still not confirmed.
+    delete_after : int
+        Number of scans in a row without a detection after which a confirmed track is deleted.
+
+    Raises
+    ------
+    ValueError
+        If a number is not whole and positive, or `hits` is larger than `window`.
+
+    Notes
+    -----
+    Blackman and Popoli (1999) treat this rule, M of N, beside others.
+
+    Examples
+    --------
+    >>> manager = TrackManager(hits=2, window=3, delete_after=2)
+    >>> life = manager.start()
+    >>> for detected in (False, True, False, False):
+    ...     life = manager.advance(life, detected)
+    ...     print(life.status)
+    tentative
+    confirmed
+    confirmed
+    deleted
+    """
+
+    hits: int
+    window: int
+    delete_after: int
+
+    def __post_init__(self):
+        """Check the rules."""
+        for name in ("hits", "window", "delete_after"):
+            _checks.whole_number(name, getattr(self, name))
+        if self.hits > self.window:
+            raise ValueError(f"hits must be at most window = {self.window}, got {self.hits}")
+
+    def start(self):
+        """Return the life of a track that one detection has just started.
+
+        Returns
+        -------
+        TrackLife
+        """
+        status = CONFIRMED if self.hits == 1 else TENTATIVE
+        return TrackLife(status, recent=(True,), age=1, misses=0)
+
+    def advance(self, life, detected):
+        """Return the life of a track after one more scan.
+
+        Parameters
+        ----------
+        life : TrackLife
+            Before the scan.
+        detected : bool
+            Whether the scan had a detection for this track.
+
+        Returns
+        -------
+        TrackLife
+            Once deleted, a track stays so.
+        """
+        if life.status == DELETED:
+            return life
+        recent = (*life.recent, bool(detected))[-self.window :]
+        misses = 0 if detected else life.misses + 1
+        life = replace(life, recent=recent, age=life.age + 1, misses=misses)
+        if life.status == CONFIRMED:
+            return replace(life, status=DELETED) if misses >= self.delete_after else life
+        if sum(recent) >= self.hits:
+            return replace(life, status=CONFIRMED)
+        return replace(life, status=DELETED) if life.age >= self.window else life

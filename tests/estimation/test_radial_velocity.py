@@ -1,0 +1,85 @@
+"""The pseudo-measurement of a radial velocity: corrected terms are right, printed ones are not."""
+
+import numpy as np
+import pytest
+
+from dopplerlib import kf_update
+from dopplerlib.estimation.radial_velocity import radial_velocity_terms, radial_velocity_update
+from dopplerlib.model.range_rate import range_rate, range_rate_jacobian
+
+X = np.array([1.5, 2.0, 0.3, -0.2])
+A = np.random.default_rng(6).normal(size=(4, 4))
+P = 0.01 * A @ A.T
+ORIGIN = np.zeros((1, 2))
+
+
+def test_its_matrix_is_the_jacobian_of_the_range_rate():
+    terms = radial_velocity_terms(X, P, 0.1)
+    np.testing.assert_allclose(terms.H[0], range_rate_jacobian(X, ORIGIN)[0, 1], rtol=1e-12)
+
+
+def test_with_the_printed_square_root_it_would_not_be():
+    """Eqs 3.20 and 3.21 multiply by the distance, here 2.5 m, where they should divide."""
+    Y = X[:2]
+    printed = np.sqrt(Y @ Y) * Y
+    u = Y / np.linalg.norm(Y)
+    assert np.linalg.norm(printed) == pytest.approx(np.linalg.norm(Y) ** 2)
+    np.testing.assert_allclose(radial_velocity_terms(X, P, 0.1).H[0, 2:], u, rtol=1e-12)
+
+
+def test_what_the_code_subtracts_is_h_because_the_direction_has_no_part_across_itself():
+    """H x = u.v: the first half of H is orthogonal to the position."""
+    terms = radial_velocity_terms(X, P, 0.1)
+    assert (terms.H @ X)[0] == pytest.approx(range_rate(X, ORIGIN)[0, 1], rel=1e-12)
+    assert terms.predicted[0] == pytest.approx(
+        range_rate(X, ORIGIN)[0, 1] + np.trace(terms.C), rel=1e-12
+    )
+
+
+def test_the_corrected_moments_are_those_of_the_quadratic_form():
+    """200 000 draws of e'Be. Its mean and variance are within 5 of their own deviations.
+
+    The deviation of the variance is taken from the draws; by chance it fails at 1e-6.
+    """
+    terms = radial_velocity_terms(X, P, 0.1)
+    u = X[:2] / np.hypot(*X[:2])
+    B = np.zeros((4, 4))
+    B[:2, 2:] = B[2:, :2] = (np.eye(2) - np.outer(u, u)) / np.hypot(*X[:2]) / 2
+    np.testing.assert_allclose(terms.C, B @ P)
+    e = np.random.default_rng(7).multivariate_normal(np.zeros(4), P, 200_000)
+    form = np.einsum("ri,ij,rj->r", e, B, e)
+    trace, extra = np.trace(terms.C), terms.R[0, 0] - 0.01
+    assert abs(form.mean() - trace) < 5 * form.std() / np.sqrt(len(form))
+    squares = (form - trace) ** 2
+    assert abs(squares.mean() - extra) < 5 * squares.std() / np.sqrt(len(form))
+    printed = radial_velocity_terms(X, P, 0.1, variance="printed").R[0, 0] - 0.01
+    assert abs(squares.mean() - printed) > 20 * squares.std() / np.sqrt(len(form))
+
+
+def test_on_a_line_it_is_a_linear_update_of_the_velocity():
+    P2 = np.array([[0.3, 0.1], [0.1, 0.2]])
+    got = radial_velocity_update([2.0, 0.1], P2, 0.15, 0.1)
+    expected = kf_update([2.0, 0.1], P2, [0.15], [[0.0, 1.0]], [[0.01]])
+    for one, other in zip(got, expected, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-15)
+
+
+def test_behind_the_radar_on_a_line_the_sign_turns():
+    """H = sign(d): a range that the filter believes negative would flip the Doppler."""
+    assert radial_velocity_terms([-2.0, 0.1], np.eye(2), 0.1).H.tolist() == [[0.0, -1.0]]
+
+
+def test_it_moves_the_estimate_towards_the_truth_in_the_plane():
+    x, Pu, innovation, _ = radial_velocity_update(X, P, range_rate(X, ORIGIN)[0, 1] + 0.1, 0.01)
+    assert range_rate(x, ORIGIN)[0, 1] > range_rate(X, ORIGIN)[0, 1]
+    assert np.linalg.eigvalsh(P - Pu).min() > -1e-12
+    assert innovation[0] == pytest.approx(0.1 - np.trace(radial_velocity_terms(X, P, 0.01).C))
+
+
+@pytest.mark.parametrize(
+    ("x", "message"),
+    [([0.0, 1.0], "x must not have a position of zero"), ([1.0, 1.0, 1.0], "x must hold pos")],
+)
+def test_a_state_without_a_direction_is_refused(x, message):
+    with pytest.raises(ValueError, match=message):
+        radial_velocity_terms(x, np.eye(len(x)), 0.1)

@@ -1,0 +1,75 @@
+"""Nearly constant velocity and acceleration are white noise behind integrators."""
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from dopplerlib.model.kinematics import (
+    nca_transition,
+    ncv_transition,
+    velocity_step_noise,
+    wna_process_noise,
+    wnj_process_noise,
+)
+
+T, q = 0.3, 0.7
+FAMILIES = [(2, ncv_transition, wna_process_noise), (3, nca_transition, wnj_process_noise)]
+
+
+def van_loan(n):
+    """Return F and Q of n integrators from one matrix exponential (Van Loan 1978)."""
+    A = np.eye(n, k=1)
+    noise = np.zeros((n, n))
+    noise[-1, -1] = q
+    block = expm(T * np.block([[-A, noise], [np.zeros((n, n)), A.T]]))
+    F = block[n:, n:].T
+    return F, F @ block[:n, n:]
+
+
+@pytest.mark.parametrize(("n", "transition", "noise"), FAMILIES)
+def test_one_axis_is_the_exponential_of_the_integrators(n, transition, noise):
+    F, Q = van_loan(n)
+    np.testing.assert_allclose(transition(T, dim=1), F, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(noise(T, q, dim=1), Q, rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize(("n", "transition", "noise"), FAMILIES)
+@pytest.mark.parametrize("order", ["axis", "derivative"])
+def test_two_steps_are_one_of_twice_the_length(n, transition, noise, order):
+    """True of noise that is white in time; the noise of Macaveiu's Eq 3 does not have it."""
+    F, Q = transition(T, 2, order), noise(T, q, 2, order)
+    np.testing.assert_allclose(F @ F, transition(2 * T, 2, order), rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(F @ Q @ F.T + Q, noise(2 * T, q, 2, order), rtol=1e-12, atol=1e-15)
+
+
+def test_noise_of_a_velocity_step_depends_on_how_often_it_is_applied():
+    F, Q = ncv_transition(T), velocity_step_noise(0.1)
+    assert (F @ Q @ F.T + Q)[1, 1] == pytest.approx(2 * Q[1, 1])
+    np.testing.assert_array_equal(Q, np.diag([0, 0.1**2, 0, 0.1**2]))
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_the_orders_hold_the_same_numbers_at_other_places(n):
+    transition, noise = {2: FAMILIES[0][1:], 3: FAMILIES[1][1:]}[n]
+    dim = 2
+    places = np.arange(n * dim).reshape(dim, n).T.ravel()  # of [x, y, v_x, ...] in [x, v_x, ...]
+    for make in (lambda order: transition(T, dim, order), lambda order: noise(T, q, dim, order)):
+        np.testing.assert_array_equal(make("derivative"), make("axis")[np.ix_(places, places)])
+    np.testing.assert_array_equal(np.diag(velocity_step_noise(2.0, 2, "derivative")), [0, 0, 4, 4])
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "name"),
+    [
+        (ncv_transition, (0.0,), "T"),
+        (ncv_transition, (T, 0), "dim"),
+        (ncv_transition, (T, 2, "blocks"), "order"),
+        (nca_transition, (-1.0,), "T"),
+        (wna_process_noise, (T, -1.0), "q"),
+        (wnj_process_noise, (np.nan, 1.0), "T"),
+        (velocity_step_noise, (0.0,), "w"),
+    ],
+)
+def test_an_impossible_setting_is_refused_by_name(function, arguments, name):
+    with pytest.raises(ValueError, match=rf"^{name} must "):
+        function(*arguments)

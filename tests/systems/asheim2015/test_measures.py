@@ -1,0 +1,44 @@
+"""Departure, usable range and errors are what their definitions say."""
+
+import numpy as np
+import pytest
+
+from dopplerlib.systems import asheim2015 as thesis
+
+
+def test_a_departure_is_the_first_long_run_of_misses():
+    time = np.arange(30) * 0.1
+    updated = np.ones((3, 30), bool)
+    updated[0, 5:14] = False  # nine are not enough
+    updated[0, 18:28] = False
+    updated[1, 20:] = False
+    np.testing.assert_allclose(thesis.departure(updated, time), [1.8, 2.0, np.inf])
+
+
+def test_the_usable_range_is_where_the_average_of_all_runs_passes_the_limit():
+    """Errors of 2 and 0 m have a root mean square of 1.4 m: they begin at the tenth second."""
+    time = np.arange(0, 20, 0.1)
+    error = np.zeros((2, len(time)))
+    error[0, 100:] = 2.0
+    # With ten scans in a window it is above 1 m when 1.41 n / 10 > 1: for n = 8.
+    found = thesis.usable_range(error, time, distance=time)
+    assert found == pytest.approx(10.0, abs=0.4)
+    assert thesis.usable_range(error[1:], time, time) == np.inf
+    error[0, :10] = 9.0  # before the search begins
+    assert thesis.usable_range(error, time, time) == found
+
+
+def test_the_error_at_a_time_is_over_runs_and_half_a_second_on_both_sides():
+    time = np.arange(0, 3, 0.1)
+    error = np.where(np.abs(time - 1.5) <= 0.51, 3.0, 100.0) * np.ones((2, 1))
+    error[1] = np.nan
+    assert thesis.rmse(error, time, 1.5) == pytest.approx(3.0)
+
+
+def test_a_mean_of_normal_values_has_the_interval_that_students_t_gives():
+    """Within a fifth of its length for 200 values: the bootstrap of a mean is known to agree."""
+    values = np.random.default_rng(1).normal(size=200)
+    found = thesis.over_runs(np.mean, values, rng=np.random.default_rng(2), resamples=2000)
+    half = 1.97 * values.std(ddof=1) / np.sqrt(200)
+    assert found.value == values.mean()
+    assert found.high - found.low == pytest.approx(2 * half, rel=0.2)

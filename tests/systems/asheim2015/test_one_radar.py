@@ -1,0 +1,106 @@
+"""Gate, nearest neighbor and filter of one radar do what text or code say."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dopplerlib import kf
+from dopplerlib.estimation.radial_velocity import radial_velocity_update
+from dopplerlib.systems import asheim2015 as thesis
+from dopplerlib.systems.asheim2015.claims import gate_growth
+
+F = np.array([[1, 0.1], [0, 1]])
+
+
+@pytest.fixture(scope="module")
+def z():
+    return thesis.simulate(3, rng=np.random.default_rng(1), duration=20).z[:, 0, :, None, :]
+
+
+def test_without_a_gate_it_is_the_linear_filter(z):
+    own = thesis.settings("code", gate=None)
+    track = thesis.filter_radar(z, own)
+    # Every cycle of kf predicts first, so it gets all but the first scan.
+    expected = kf(z[:, 1:, 0], F, own.Q, np.eye(2), np.diag(own.R(1.0)), z[:, 0, 0], own.P0)
+    np.testing.assert_allclose(track.x[:, 1:], expected.x, rtol=1e-12)
+    np.testing.assert_allclose(track.P[:, 1:], expected.P, rtol=1e-12)
+    np.testing.assert_allclose(track.nis[:, 1:], expected.nis, rtol=1e-9)
+    np.testing.assert_array_equal(track.x[:, 0], z[:, 0, 0])
+    assert track.updated.all()
+
+
+def test_range_then_velocity_is_the_linear_filter_of_both(z):
+    """The pseudo-measurement of Table 3.3 after a range update, against both at once."""
+    own = thesis.settings("code", gate=None)
+    track = thesis.filter_radar(z, own)
+    (sr, sv) = np.sqrt(own.R(1.0))
+    x, P = z[0, 0, 0], own.P0
+    for k in range(1, 50):
+        x, P = F @ x, F @ P @ F.T + own.Q
+        K = P[:, 0] / (P[0, 0] + sr**2)
+        x, P = x + K * (z[0, k, 0, 0] - x[0]), P - np.outer(K, P[0])
+        x, P, _, _ = radial_velocity_update(x, (P + P.T) / 2, z[0, k, 0, 1], sv)
+    np.testing.assert_allclose(track.x[0, 49], x, rtol=1e-10)
+    np.testing.assert_allclose(track.P[0, 49], P, rtol=1e-9)
+
+
+def test_the_printed_gate_is_a_box_whatever_the_covariance():
+    """An innovation just inside or outside the box, at covariances that differ by 1e6."""
+    own = thesis.settings("text")
+    for P0 in (1e-3, 1e3):
+        wide = replace(own, P0=P0 * np.eye(2))
+        for scale, inside in ((0.999, True), (1.001, False)):
+            for i in range(2):
+                off = scale * own.box[i] * np.eye(2)[i]
+                detections = np.array([[[2.0, 0.0]], [[2.0 + off[0], off[1]]]])
+                assert thesis.filter_radar(detections, wide).updated[1] == inside
+    assert gate_growth(own) == 1
+
+
+def test_a_gate_on_nis_opens_while_the_filter_coasts():
+    own = thesis.settings("modern")
+    detections = np.full((60, 1, 2), np.nan)
+    detections[0] = [2.0, 0.1]
+    for k, used in ((1, False), (50, True)):
+        trial = detections.copy()
+        trial[k] = [2.0 + 0.01 * k + 0.5, 0.1]
+        assert thesis.filter_radar(trial, own).updated[k] == used
+
+
+def test_a_miss_is_a_prediction():
+    own = thesis.settings("code")
+    detections = np.full((4, 2, 2), np.nan)
+    detections[0, 0] = [2.0, 0.1]
+    track = thesis.filter_radar(detections, own)
+    np.testing.assert_allclose(track.x[:, 0], [2.0, 2.01, 2.02, 2.03])
+    np.testing.assert_allclose(track.P[1], F @ own.P0 @ F.T + own.Q)
+    assert track.updated.tolist() == [True, False, False, False]
+    assert np.isnan(track.chosen[1:]).all()
+
+
+def test_text_and_code_pick_different_detections():
+    """Nearest in range but too fast, against a bit farther and fitting."""
+    own = thesis.settings("code")
+    detections = np.array([[[2.0, 0.0], [np.nan] * 2], [[2.01, 3.0], [2.2, 0.1]]])
+    text = thesis.filter_radar(detections, own)
+    code = thesis.filter_radar(detections, own, association="nearest-first")
+    assert text.updated[1] and not code.updated[1]
+    np.testing.assert_array_equal(text.chosen[1], [2.2, 0.1])
+
+
+def test_using_the_first_measurement_twice_moves_the_start(z):
+    """The prediction carries it on by v T, and the update hardly corrects this."""
+    own = thesis.settings("code")
+    once, twice = (thesis.filter_radar(z, own, reuse_first=r).x[:, 0] for r in (False, True))
+    moved = twice - once
+    expected = 0.1 * z[:, 0, 0, 1]
+    np.testing.assert_allclose(moved[:, 0], expected, rtol=0.1)
+
+
+def test_an_empty_first_scan_needs_a_start():
+    detections = np.full((3, 1, 2), np.nan)
+    with pytest.raises(ValueError, match="x0 must be given where the first scan is empty"):
+        thesis.filter_radar(detections, thesis.settings("code"))
+    track = thesis.filter_radar(detections, thesis.settings("code"), x0=[1.9, 0.1])
+    assert track.x[0].tolist() == [1.9, 0.1]

@@ -1,0 +1,58 @@
+"""The settings are those of the thesis's text, of its code, or ours, and which is said."""
+
+import numpy as np
+import pytest
+
+from dopplerlib.systems import asheim2015 as thesis
+
+
+def test_text_and_code_differ_where_the_code_does_not_square():
+    text, code = thesis.settings("text"), thesis.settings("code")
+    sigma = thesis.scenario()["filter"]["sigma_range"]
+    assert text.R(1.0)[0] == pytest.approx(sigma**2)
+    assert code.R(1.0)[0] == pytest.approx(sigma)
+    assert text.R(1.0)[1] == code.R(1.0)[1]
+    assert not np.allclose(np.diag(text.Q), np.diag(code.Q))
+
+
+def test_the_process_noise_of_the_code_is_white_noise_acceleration_over_the_interval():
+    """Its spectral density thus depends on the interval: 1 m^2/s^3 at 0.1 s, 0.1 at 1 s."""
+    for T, q in ((0.1, 1.0), (1.0, 0.1)):
+        code, same = thesis.settings("code", T), thesis.settings("modern", T, q=q)
+        np.testing.assert_allclose(code.Q, same.Q, rtol=1e-12)
+
+
+def test_the_gate_of_text_and_code_is_the_same_box():
+    """|nu| < sqrt(c sigma), by hand: the roots of 0.8 and of 0.4."""
+    for name in ("text", "code"):
+        np.testing.assert_allclose(thesis.settings(name).box, [0.8944, 0.6325], atol=5e-5)
+
+
+def test_the_resolutions_are_those_of_pulse_and_integration():
+    np.testing.assert_allclose(thesis.resolutions(), [0.15, 0.3 / 14], rtol=1e-12)
+    np.testing.assert_allclose(
+        thesis.deviations(3.5), np.array(thesis.resolutions()) / np.sqrt(20), rtol=1e-12
+    )
+
+
+def test_our_measurement_noise_is_the_law_with_a_floor():
+    modern, bare = thesis.settings("modern"), thesis.settings("modern", floor=(0.0, 0.0))
+    d = np.array([0.5, 4.0])
+    np.testing.assert_allclose(bare.R(d), thesis.deviations(d) ** 2)
+    np.testing.assert_allclose(
+        modern.R(d), thesis.deviations(d) ** 2 + [0.02**2, 0.01**2], rtol=1e-12
+    )
+
+
+def test_an_unknown_name_is_refused():
+    with pytest.raises(ValueError, match="name must be one of 'text', 'code', 'modern'"):
+        thesis.settings("thesis")
+    with pytest.raises(ValueError, match="gate must be one of"):
+        thesis.settings("code", gate="round")
+
+
+def test_the_printed_numbers_agree_where_they_stand_twice():
+    s, q = thesis.scenario(), thesis.quoted()
+    f = s["filter"]
+    assert f["text"]["Q_diagonal"] == [f["text"]["range_variance"], f["text"]["velocity_variance"]]
+    assert q["noise"]["snr_useless"] == s["error_area"]["snr"]
