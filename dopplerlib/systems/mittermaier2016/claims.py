@@ -1,9 +1,10 @@
 """Evidence on every claim of the paper, for the verdicts."""
 
 from ... import _checks
-from .claims_printed import printed_evidence
-from .claims_start import start_evidence
-from .claims_tracking import tracking_evidence
+from ._claims_printed import printed_evidence
+from ._claims_signal import signal_evidence
+from ._claims_start import start_evidence
+from ._claims_tracking import tracking_evidence
 
 
 def evidence(*, rng):
@@ -25,5 +26,10 @@ def evidence(*, rng):
         If `rng` is not a generator.
     """
     _checks.generator("rng", rng)
-    start, tracking = rng.spawn(2)
-    return printed_evidence() | start_evidence(start) | tracking_evidence(tracking)
+    start, tracking, signal = rng.spawn(3)
+    return (
+        printed_evidence()
+        | signal_evidence(signal)
+        | start_evidence(start)
+        | tracking_evidence(tracking)
+    )
