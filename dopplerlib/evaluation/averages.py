@@ -1,4 +1,4 @@
-"""Averages of NIS and NEES: how many independent values they are worth; and their median."""
+"""Averages of NIS and NEES: how many independent values they are worth."""
 
 import numpy as np
 
@@ -154,47 +154,3 @@ def nees_samples(P, F, Q):
         total += np.sum(C**2)
         C = step[lag:] @ C[:-1]
     return float(n * len(P) ** 2 / (n * len(P) + 2 * total))
-
-
-def median_interval(values, confidence=0.95):
-    """Return bounds for the median of the distribution from which runs were drawn.
-
-    Parameters
-    ----------
-    values : array_like, shape (runs, ...)
-        One value for each run, not NaN.
-    confidence : float
-        Probability, at least, that the median lies between the bounds.
-
-    Returns
-    -------
-    lower, upper : ndarray, shape (...)
-        Two of the values.
-
-    Raises
-    ------
-    ValueError
-        If `values` is not finite, `confidence` is not between 0 and 1, or there are too few runs.
-
-    Notes
-    -----
-    Each value is below the median with probability 1/2, whatever the distribution: the number below
-    is binomial, and counting decides which values to take.
-
-    Examples
-    --------
-    All of six values are on one side in 2 of 64 cases, so that the median is between the outermost
-    with a probability of 97 %:
-
-    >>> [float(bound) for bound in median_interval([3, 1, 4, 1.5, 9, 2.6])]
-    [1.0, 9.0]
-    """
-    from scipy.stats import binom
-
-    values = np.sort(_checks.finite("values", values, None), axis=0)
-    tail = (1 - _checks.probability("confidence", confidence)) / 2
-    runs = len(values)
-    out = int(binom.ppf(tail, runs, 0.5)) - 1  # at most so many below, with less than `tail`
-    if out < 0:
-        raise ValueError(f"values must be of more runs for this confidence, got {runs}")
-    return values[out], values[runs - 1 - out]

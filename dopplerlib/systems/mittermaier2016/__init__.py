@@ -4,7 +4,7 @@ Extended Kalman Doppler tracking and model determination for multi-sensor short-
 Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
-from .causes import Consistency, consistency_runs, matched_P0, switched_ekf
+from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
 from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
@@ -48,6 +48,7 @@ __all__ = [
     "published_figure3",
     "published_figure6",
     "quoted",
+    "range_claims",
     "ruled_out",
     "samples_needed",
     "scenario",
