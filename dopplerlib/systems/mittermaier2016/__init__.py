@@ -4,32 +4,50 @@ Extended Kalman Doppler tracking and model determination for multi-sensor short-
 Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
-<<<<<<< HEAD
-
 from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
 from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
-from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
-from .published import Figure4, PublishedFigure3, PublishedFigure6, Reading, Table2, figure4
+from .map_readings import ORIENTATIONS, figure3_readings, figure3_score
+from .noise_sweep import LEVELS, Figure4, Reading, figure4
 from .published import (
-    PublishedFigure4, from .noise_sweep import LEVELS, published_figure3, published_figure4, published_figure6, quoted, scenario, table2
-from .readings import READINGS, SCORED, log_likelihood, saved_figure4, score, scored_readings, structure
+    PublishedFigure3,
+    PublishedFigure4,
+    PublishedFigure6,
+    Table2,
+    published_figure3,
+    published_figure4,
+    published_figure6,
+    quoted,
+    scenario,
+    table2,
+)
+from .readings import (
+    READINGS,
+    SCORED,
+    log_likelihood,
+    saved_figure4,
+    score,
+    scored_readings,
+    structure,
+)
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
 from .tracking import Figure6, figure6
 
 __all__ = [
+    "LEVELS",
+    "ORIENTATIONS",
+    "READINGS",
+    "SCORED",
     "Consistency",
     "ErrorMap",
     "Figure4",
     "Figure6",
     "Figure6Readings",
-    "ORIENTATIONS",
     "PublishedFigure3",
+    "PublishedFigure4",
     "PublishedFigure6",
-    "READINGS",
     "Reading",
-    "SCORED",
     "Starts",
     "Table2",
     "comparable",
@@ -39,12 +57,9 @@ __all__ = [
     "figure3_bound",
     "figure3_readings",
     "figure3_score",
-    "figure4
-from .published import (
-    PublishedFigure4",
+    "figure4",
     "figure6",
     "figure6_readings",
-    "from .noise_sweep import LEVELS",
     "linear_filter",
     "linear_world",
     "log_likelihood",
