@@ -56,10 +56,16 @@ def signal_evidence(rng):
             }
         ),
         "signal-short": Readings(
-            {f"{rate / 1e3:.0f} kHz": float(10 * np.log10(v)) for rate, v in zip(rates, needed, strict=True)}
+            {
+                f"{rate / 1e3:.0f} kHz": float(10 * np.log10(v))
+                for rate, v in zip(rates, needed, strict=True)
+            }
         ),
         "signal-white": Readings(
-            {f"{r / 1e3:.0f} kHz": float(overlap_correlation(v)) for r, v in zip(rates, long, strict=True)}
+            {
+                f"{r / 1e3:.0f} kHz": float(overlap_correlation(v))
+                for r, v in zip(rates, long, strict=True)
+            }
         ),
     }
 

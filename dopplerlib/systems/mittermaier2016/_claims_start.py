@@ -25,12 +25,12 @@ def _maps(rng):
     p = published_figure3()
     children = rng.spawn(6)
     one = figure3(_DRAWS, rng=children[0])
-    ten, thirty = (
+    ten, twenty = (
         {
             f"{name} likelihood": figure3(draws, rng=child, samples=samples, likelihood=name)
             for name, child in zip(_LIKELIHOODS, pair, strict=True)
         }
-        for draws, samples, pair in ((_DRAWS, 10, children[1:3]), (1, 30, children[3:5]))
+        for draws, samples, pair in ((_DRAWS, 10, children[1:3]), (1, 20, children[3:5]))
     )
     readings = {
         r.orientation: r
@@ -47,7 +47,7 @@ def _maps(rng):
         ),
         "figure3-improves": Readings({name: _improved(one, m) for name, m in ten.items()}),
         "figure3-better": Readings({name: _ratio(m, one) for name, m in ten.items()}),
-        "figure3-longer": Readings({name: _ratio(thirty[name], ten[name]) for name in ten}),
+        "figure3-longer": Readings({name: _ratio(twenty[name], ten[name]) for name in ten}),
     }
 
 

@@ -72,7 +72,9 @@ def test_a_constant_state_is_an_assumption_for_table_2_and_a_mistake_for_figure_
     middle = np.eye(6)
     middle[:3, 3:] = 4.5 * s.T * np.eye(3)
     error = s.sigma_f / np.sqrt(10)
-    assert np.abs(doppler_shift(middle @ s.x0, s.array) - doppler_shift(s.x0, s.array)).max() < error
+    assert (
+        np.abs(doppler_shift(middle @ s.x0, s.array) - doppler_shift(s.x0, s.array)).max() < error
+    )
     x = np.r_[0.5, 0.5, 0, drawn.velocity]
     moved = np.abs(doppler_shift(middle @ x, drawn.array) - doppler_shift(x, drawn.array)).max()
     assert moved > 10 * drawn.sigma_f / np.sqrt(10)
