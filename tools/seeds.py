@@ -1,7 +1,8 @@
 """Judge the claims of every document with several seeds: no verdict may depend on the draw.
 
 Prints how many claims of each document got which verdict, for each seed, and every claim whose
-verdict is not the one on record. Progress goes to standard error; the exit code is 1 if there is one.
+verdict is not the one on record. Progress goes to standard error. The exit code is
+1 if there is one.
 """
 
 import argparse
