@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from dopplerlib.systems.mittermaier2016 import (
-    READINGS,
-    SCORED,
+    SCORED_LEVELS,
+    SWEEP_READINGS,
     figure4,
+    figure4_score,
     published_figure4,
-    score,
 )
 
 DATA = Path(__file__).resolve().parent.parent / "data" / "mittermaier2016"
@@ -41,17 +41,17 @@ def readings(path):
     part = path.with_suffix(".part")
     rows = json.loads(part.read_text(encoding="utf-8")) if part.exists() else []
     published = published_figure4()
-    for reading in READINGS[len(rows) :]:
-        sys.stderr.write(f"\rreading {len(rows) + 1} of {len(READINGS)}")
+    for reading in SWEEP_READINGS[len(rows) :]:
+        sys.stderr.write(f"\rreading {len(rows) + 1} of {len(SWEEP_READINGS)}")
         rng = np.random.default_rng(SEED)
-        result = figure4(SCORED, DRAWS, rng=rng, reading=reading, bound=False)
-        values = score(result, published, rng=np.random.default_rng(SEED))
+        result = figure4(SCORED_LEVELS, DRAWS, rng=rng, reading=reading, bound=False)
+        values = figure4_score(result, published, rng=np.random.default_rng(SEED))
         names = ("score", "low", "high")
         rows.append(asdict(reading) | {k: round(v, 1) for k, v in zip(names, values, strict=True)})
         write(part, json.dumps(rows))
     sys.stderr.write("\n")
     lines = ",\n".join("    " + json.dumps(row) for row in rows)
-    head = f'{{\n  "seed": {SEED},\n  "draws": {DRAWS},\n  "levels": {list(SCORED)},\n'
+    head = f'{{\n  "seed": {SEED},\n  "draws": {DRAWS},\n  "levels": {list(SCORED_LEVELS)},\n'
     write(path, head + f'  "readings": [\n{lines}\n  ]\n}}\n')
     part.unlink()
 

@@ -8,8 +8,8 @@ from .causes import Consistency, consistency_runs, matched_P0, range_claims, swi
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
 from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
-from .map_readings import ORIENTATIONS, figure3_readings, figure3_score
-from .noise_sweep import LEVELS, Figure4, Reading, figure4
+from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
+from .noise_sweep import NOISE_LEVELS, Figure4, SweepReading, figure4
 from .published import (
     PublishedFigure3,
     PublishedFigure4,
@@ -22,23 +22,23 @@ from .published import (
     scenario,
     table2,
 )
-from .readings import (
-    READINGS,
-    SCORED,
-    log_likelihood,
-    saved_figure4,
-    score,
-    scored_readings,
-    structure,
-)
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
+from .sweep_readings import (
+    SCORED_LEVELS,
+    SWEEP_READINGS,
+    dots_log_likelihood,
+    dots_structure,
+    figure4_readings,
+    figure4_score,
+    saved_figure4,
+)
 from .tracking import Figure6, figure6
 
 __all__ = [
-    "LEVELS",
+    "NOISE_LEVELS",
     "ORIENTATIONS",
-    "READINGS",
-    "SCORED",
+    "SCORED_LEVELS",
+    "SWEEP_READINGS",
     "Consistency",
     "ErrorMap",
     "Figure4",
@@ -49,20 +49,24 @@ __all__ = [
     "PublishedFigure6",
     "Reading",
     "Starts",
+    "SweepReading",
     "Table2",
     "comparable",
     "consistency_runs",
+    "dots_log_likelihood",
+    "dots_structure",
     "faulty_filters",
     "figure3",
     "figure3_bound",
     "figure3_readings",
     "figure3_score",
     "figure4",
+    "figure4_readings",
+    "figure4_score",
     "figure6",
     "figure6_readings",
     "linear_filter",
     "linear_world",
-    "log_likelihood",
     "matched_P0",
     "published_figure3",
     "published_figure4",
@@ -73,13 +77,10 @@ __all__ = [
     "samples_needed",
     "saved_figure4",
     "scenario",
-    "score",
-    "scored_readings",
     "shares_above",
     "start_box",
     "start_misfit",
     "still_counts",
-    "structure",
     "switched_ekf",
     "table2",
     "table2_starts",

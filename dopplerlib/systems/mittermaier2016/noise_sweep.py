@@ -12,7 +12,7 @@ from ...model.doppler import doppler_shift
 from ...model.radar_array import RadarArray
 
 # Variances of the 31 levels of the figure, in Hz^2.
-LEVELS = 10.0 ** (-4 + 4 * np.arange(31) / 30)
+NOISE_LEVELS = 10.0 ** (-4 + 4 * np.arange(31) / 30)
 # Section 3.4: five sensors, 0.4 m, ten samples in 10 ms.
 SENSORS, LENGTH, SAMPLES, T = 5, 0.4, 10, 0.001
 DEPTH, WIDTH = (0.3, 1.0), (-0.5, 0.5)
@@ -29,7 +29,7 @@ _PLANE = [True, True, False, True, True, False]
 
 
 @dataclass(frozen=True)
-class Reading:
+class SweepReading:
     """What the text leaves open about Fig 4, decided in one way.
 
     Attributes
@@ -49,7 +49,7 @@ class Reading:
     box : {"wide", "approaching", "region"}
         See `BOXES`.
     axis : {"y", "x"}
-        Along which the array stands. Fig 4 refers to Fig 3, which draws it along x = 0.
+        Along which the array stands. The text gives its length only.
     """
 
     velocity: str = "direction"
@@ -101,8 +101,8 @@ def figure4(
     rng : numpy.random.Generator
         Source of velocities and noise. Fewer levels or draws give the same values of those asked
         for.
-    reading : Reading, optional
-        What the text leaves open; `Reading()` if None.
+    reading : SweepReading, optional
+        What the text leaves open; `SweepReading()` if None.
     bound : bool
         Whether the bounds are wanted; else they are NaN.
     progress : bool
@@ -126,9 +126,9 @@ def figure4(
     >>> result.position.shape, bool((result.position[1] > 10 * result.position[0]).all())
     ((2, 2), True)
     """
-    reading = Reading() if reading is None else reading
-    levels = list(range(len(LEVELS)) if levels is None else levels)
-    if not all(isinstance(k, int | np.integer) and 0 <= k < len(LEVELS) for k in levels):
+    reading = SweepReading() if reading is None else reading
+    levels = list(range(len(NOISE_LEVELS)) if levels is None else levels)
+    if not all(isinstance(k, int | np.integer) and 0 <= k < len(NOISE_LEVELS) for k in levels):
         raise ValueError(f"levels must be whole numbers from 0 to 30, got {levels}")
     draws = _checks.whole_number("draws", draws)
     _checks.generator("rng", rng)
@@ -136,7 +136,7 @@ def figure4(
     _checks.one_of("reading.axis", reading.axis, ("x", "y"))
 
     array = RadarArray.linear(SENSORS, LENGTH, axis=reading.axis)
-    streams = [child.spawn(1 + len(LEVELS)) for child in rng.spawn(draws)]
+    streams = [child.spawn(1 + len(NOISE_LEVELS)) for child in rng.spawn(draws)]
     x = np.stack([_states(reading, own[0]) for own in streams])
     path = np.repeat(x[..., None, :], SAMPLES, axis=-2)
     if reading.likelihood == "moving":
@@ -146,7 +146,7 @@ def figure4(
     errors = []
     for k in _bar(levels, "noise level", progress):
         noise = np.stack([own[1 + k].standard_normal(clean.shape[1:]) for own in streams])
-        sigma_f = np.sqrt(LEVELS[k])
+        sigma_f = np.sqrt(NOISE_LEVELS[k])
         z = clean + sigma_f * noise
         start = ml_start(z, array, sigma_f, T, box, reading.likelihood, workers=workers)
         errors.append(_sizes(start.x - x))
@@ -157,9 +157,9 @@ def figure4(
         unit = np.stack([mean_norm(P[..., part, part]).mean(axis=-1) for part in _PARTS])
     else:
         unit = np.full((2, draws), np.nan)
-    bounds = np.sqrt(LEVELS[levels])[:, None, None] * unit
+    bounds = np.sqrt(NOISE_LEVELS[levels])[:, None, None] * unit
     parts = (values[:, i] for values in (mean, median, bounds) for i in (0, 1))
-    return Figure4(LEVELS[levels], *parts)
+    return Figure4(NOISE_LEVELS[levels], *parts)
 
 
 _PARTS = (np.s_[:2], np.s_[3:5])

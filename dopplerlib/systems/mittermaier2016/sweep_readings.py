@@ -5,25 +5,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .noise_sweep import LEVELS, Figure4, Reading
+from .noise_sweep import NOISE_LEVELS, Figure4, SweepReading
 from .published import DATA
 
 # The paper's own speeds: that of Table 2 (rounded), the unit, and that of Fig 3.
 _VELOCITIES = (
-    Reading("center", (0.5, 1.0)),
-    Reading("center", (0.5, 1.5)),
-    Reading("center", (0.0, 2.0)),
-    Reading("direction", (0.75, 0.75)),
-    Reading("direction", (1.0, 1.0)),
-    Reading("direction", (2.0, 2.0)),
-    Reading("disc", (0.0, 1.0)),
-    Reading("disc", (0.0, 2.0)),
-    Reading("square", (0.0, 1.0)),
-    Reading("square", (0.0, 2.0)),
+    SweepReading("center", (0.5, 1.0)),
+    SweepReading("center", (0.5, 1.5)),
+    SweepReading("center", (0.0, 2.0)),
+    SweepReading("direction", (0.75, 0.75)),
+    SweepReading("direction", (1.0, 1.0)),
+    SweepReading("direction", (2.0, 2.0)),
+    SweepReading("disc", (0.0, 1.0)),
+    SweepReading("disc", (0.0, 2.0)),
+    SweepReading("square", (0.0, 1.0)),
+    SweepReading("square", (0.0, 2.0)),
 )
-# Every velocity with either likelihood, one draw for all points or one for each. Then, for the most
-# likely ones, what else could be different: the grid of the text, other boxes, the array turned.
-READINGS = (
+# Every velocity with either likelihood, one draw for all points or one for each. Then, for some of
+# them, what else could be different: the grid of the text, other boxes, the array turned.
+SWEEP_READINGS = (
     tuple(
         replace(velocity, shared=shared, likelihood=likelihood, spacing=0.1)
         for velocity in _VELOCITIES
@@ -36,13 +36,18 @@ READINGS = (
         for likelihood in ("moving", "static")
     )
     + tuple(
-        replace(velocity, spacing=0.1, **change)
-        for velocity in (_VELOCITIES[1], _VELOCITIES[3])
-        for change in ({"box": "approaching"}, {"box": "region"}, {"axis": "x"})
+        replace(velocity, shared=shared, likelihood=likelihood, spacing=0.1, box=box)
+        for velocity in (_VELOCITIES[1], _VELOCITIES[3], _VELOCITIES[8])
+        for shared in (True, False)
+        for likelihood in ("moving", "static")
+        for box in ("approaching", "region")
+    )
+    + tuple(
+        replace(velocity, spacing=0.1, axis="x") for velocity in (_VELOCITIES[1], _VELOCITIES[3])
     )
 )
 # Levels at which readings are compared: below them the dots are a few steps of their grid.
-SCORED = (10, 14, 18, 22, 26, 30)
+SCORED_LEVELS = (10, 14, 18, 22, 26, 30)
 # Markers of the figure stand on a grid of this many m or m/s.
 STEP = 0.00137
 
@@ -68,7 +73,7 @@ class Structure:
     within: np.ndarray
 
 
-def structure(position, velocity):
+def dots_structure(position, velocity):
     """Return the model of dots that are given.
 
     Parameters
@@ -85,7 +90,7 @@ def structure(position, velocity):
     Two sequences that differ by a constant factor and nothing else:
 
     >>> dots = np.array([[1.0, 2.0], [3.0, 6.0], [5.0, 10.0]])
-    >>> result = structure(dots, dots)
+    >>> result = dots_structure(dots, dots)
     >>> bool(np.allclose(result.within, 0)), result.between.round(3).tolist()
     (True, [[0.24, 0.24], [0.24, 0.24]])
     """
@@ -100,7 +105,7 @@ def structure(position, velocity):
     return Structure(mean, between, within)
 
 
-def log_likelihood(model, position, velocity):
+def dots_log_likelihood(model, position, velocity):
     """Return how likely dots are under a model, as a sum over independent sequences.
 
     Parameters
@@ -131,7 +136,7 @@ def log_likelihood(model, position, velocity):
     return float(-0.5 * (square + draws * np.linalg.slogdet(2 * np.pi * S)[1]))
 
 
-def score(figure, published, *, rng, resamples=200):
+def figure4_score(figure, published, *, rng, resamples=200):
     """Return how likely the published dots are under our simulation of a reading.
 
     Parameters
@@ -152,31 +157,31 @@ def score(figure, published, *, rng, resamples=200):
     low, high : float
         Central 95 % of the score when our sequences are drawn again from themselves.
     """
-    rows = [int(np.argmin(np.abs(LEVELS - variance))) for variance in figure.variance]
+    rows = [int(np.argmin(np.abs(NOISE_LEVELS - variance))) for variance in figure.variance]
     dots = published.position[rows], published.velocity[rows]
     draws = figure.position.shape[1]
 
     def one(columns):
-        ours = structure(figure.position[:, columns], figure.velocity[:, columns])
-        return log_likelihood(ours, *dots)
+        ours = dots_structure(figure.position[:, columns], figure.velocity[:, columns])
+        return dots_log_likelihood(ours, *dots)
 
     again = [one(rng.integers(draws, size=draws)) for _ in range(resamples)]
     return one(np.arange(draws)), *(float(q) for q in np.quantile(again, (0.025, 0.975)))
 
 
-def scored_readings():
+def figure4_readings():
     """Return every reading with its score, the most likely first, as `make figure4` left them.
 
     Returns
     -------
     list of tuple
-        Reading, score in nats, and the ends of its 95 % interval.
+        The reading, its score in nats, and the ends of its 95 % interval.
     """
     saved = json.loads((DATA / "ourfigure4_readings.json").read_text(encoding="utf-8"))
     rows = []
     for row in saved["readings"]:
         values = tuple(row.pop(name) for name in ("score", "low", "high"))
-        rows.append((Reading(**row | {"speed": tuple(row["speed"])}), *values))
+        rows.append((SweepReading(**row | {"speed": tuple(row["speed"])}), *values))
     return sorted(rows, key=lambda row: -row[1])
 
 
@@ -188,5 +193,5 @@ def saved_figure4():
     Figure4
     """
     table = np.genfromtxt(DATA / "ourfigure4.csv", delimiter=",", names=True)
-    parts = [table[name].reshape(len(LEVELS), -1) for name in table.dtype.names[2:]]
-    return Figure4(LEVELS, *parts)
+    parts = [table[name].reshape(len(NOISE_LEVELS), -1) for name in table.dtype.names[2:]]
+    return Figure4(NOISE_LEVELS, *parts)
