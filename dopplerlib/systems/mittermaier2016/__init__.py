@@ -20,6 +20,7 @@ from .published import (
     published_figure6,
     quoted,
     scenario,
+    signal_chain,
     table2,
 )
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
@@ -33,6 +34,7 @@ from .sweep_readings import (
     saved_figure4,
 )
 from .tracking import Figure6, figure6
+from .white_noise import WalkFilter, walk_filter
 
 __all__ = [
     "NOISE_LEVELS",
@@ -51,6 +53,7 @@ __all__ = [
     "Starts",
     "SweepReading",
     "Table2",
+    "WalkFilter",
     "comparable",
     "consistency_runs",
     "dots_log_likelihood",
@@ -78,10 +81,12 @@ __all__ = [
     "saved_figure4",
     "scenario",
     "shares_above",
+    "signal_chain",
     "start_box",
     "start_misfit",
     "still_counts",
     "switched_ekf",
     "table2",
     "table2_starts",
+    "walk_filter",
 ]

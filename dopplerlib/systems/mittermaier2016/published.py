@@ -72,7 +72,7 @@ class PublishedFigure3:
 
     @property
     def shown(self):
-        """Errors for drawing, in m: `lowest` where only known to be below it."""
+        """Return `error` with `lowest` in it where the error is only known to be below."""
         return np.where(self.below, self.lowest, self.error)
 
 
@@ -215,6 +215,17 @@ def published_figure6():
         path_time=np.array([(marker["sample"] - 1) * T for marker in markers]),
         path=np.array([marker["est_position_m"] for marker in markers]),
     )
+
+
+def signal_chain():
+    """Return what the paper says about its signal chain, by name.
+
+    Returns
+    -------
+    dict
+        Units are in the names; see ``data/mittermaier2016/signal_chain.toml``.
+    """
+    return tomllib.loads((DATA / "signal_chain.toml").read_text(encoding="utf-8"))
 
 
 def published_figure4():
