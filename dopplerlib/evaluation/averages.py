@@ -124,10 +124,11 @@ def nees_samples(P, F, Q):
 
     Notes
     -----
-    The error of a right linear filter follows e_k = A_k e_(k-1) + noise that is new, with
-    A_k = (I - K_k H_k) F = P_k (F P_(k-1) F' + Q)^-1 F. Divided by the factors of the covariances,
-    P = L L', errors at two times have the covariance C = L_k^-1 A_k ... A_(j+1) L_j, and being
-    Gaussian, their squared lengths have the covariance 2 |C|^2 (Frobenius).
+    The error of a right linear filter follows e_k = Phi_k e_(k-1) + noise that is new, with
+    Phi_k = (I - K_k H_k) F = P_k (F P_(k-1) F' + Q)^-1 F. Divided by the factors of the
+    covariances, P = L L', errors at two times have the covariance
+    C = L_k^-1 Phi_k ... Phi_(j+1) L_j, and being Gaussian, their squared lengths have as
+    covariance twice the sum of the squares of all entries of C.
 
     Examples
     --------

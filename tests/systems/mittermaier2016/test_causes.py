@@ -111,6 +111,12 @@ def test_the_second_order_filter_is_less_sure_and_in_a_linear_world_the_same(rec
     assert (np.trace(second.S, axis1=-2, axis2=-1) > np.trace(first.S, axis1=-2, axis2=-1))[
         :, 0
     ].all()
+    F, Q = paper.causes.constant_velocity(SCENARIO.T, SCENARIO.sigma_p)
+    mean, covariance = _missed(
+        (F @ paper.table2().x_ml)[None], (F @ SCENARIO.P0 @ F.T + Q)[None], SCENARIO.array
+    )
+    np.testing.assert_allclose(first.innovation[:, 0] - second.innovation[:, 0], mean[[0] * 20])
+    np.testing.assert_allclose(second.S[:, 0] - first.S[:, 0], covariance[[0] * len(second.S)])
     flat = {"path": truth[:20], "curvature": 0.0}
     np.testing.assert_array_equal(
         paper.switched_ekf(*settings(z), **flat, second_order=True).x,
