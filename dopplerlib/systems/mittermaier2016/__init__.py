@@ -9,7 +9,7 @@ from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_abov
 from .faults import faulty_filters, linear_filter, linear_world
 from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
-from .noise_sweep import NOISE_LEVELS, Figure4, SweepReading, figure4
+from .noise_sweep import ERROR_LIMITS, NOISE_LEVELS, Figure4, SweepReading, figure4
 from .published import (
     PublishedFigure3,
     PublishedFigure4,
@@ -37,6 +37,7 @@ from .tracking import Figure6, figure6
 from .white_noise import WalkFilter, walk_filter
 
 __all__ = [
+    "ERROR_LIMITS",
     "NOISE_LEVELS",
     "ORIENTATIONS",
     "SCORED_LEVELS",

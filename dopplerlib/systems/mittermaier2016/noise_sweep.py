@@ -16,6 +16,8 @@ NOISE_LEVELS = 10.0 ** (-4 + 4 * np.arange(31) / 30)
 # Section 3.4: five sensors, 0.4 m, ten samples in 10 ms.
 SENSORS, LENGTH, SAMPLES, T = 5, 0.4, 10, 0.001
 DEPTH, WIDTH = (0.3, 1.0), (-0.5, 0.5)
+# What the text says that the averaged errors stay below, in m and m/s.
+ERROR_LIMITS = (0.3, 0.2)
 
 # Where the search may look: distance from the array, along it, and the two velocities.
 # The text says that there are bounds, not which. Its line of sensors is blind for the side on

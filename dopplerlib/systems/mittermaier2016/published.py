@@ -217,17 +217,6 @@ def published_figure6():
     )
 
 
-def signal_chain():
-    """Return what the paper says about its signal chain, by name.
-
-    Returns
-    -------
-    dict
-        Units are in the names; see ``data/mittermaier2016/signal_chain.toml``.
-    """
-    return tomllib.loads((DATA / "signal_chain.toml").read_text(encoding="utf-8"))
-
-
 def published_figure4():
     """Return the digitized dots of Fig 4.
 
@@ -244,6 +233,17 @@ def published_figure4():
     for values, table in zip(dots, tables, strict=True):
         values[level, table["series"].astype(int) - 1] = table["error"]
     return PublishedFigure4(variance, *dots)
+
+
+def signal_chain():
+    """Return what the paper says about its signal chain, by name.
+
+    Returns
+    -------
+    dict
+        Units are in the names; see ``data/mittermaier2016/signal_chain.toml``.
+    """
+    return tomllib.loads((DATA / "signal_chain.toml").read_text(encoding="utf-8"))
 
 
 def quoted():
