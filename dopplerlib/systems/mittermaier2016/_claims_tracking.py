@@ -61,6 +61,7 @@ def _readings(rng):
         name: Draws(np.concatenate([part[name][0] for part in parts]), float(theirs))
         for name, (_, theirs) in parts[0].items()
     }
+    found["range-most"] = {k: v for k, v in found["range-most"].items() if "no gate" not in k}
     return {name: Readings(by_name) for name, by_name in found.items()} | drawn
 
 
