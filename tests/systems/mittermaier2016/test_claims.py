@@ -63,11 +63,7 @@ def test_every_underdetermined_claim_is_a_gap_that_is_listed():
         name for one in read_deviations(DATA / "deviations.toml").entries for name in one.claims
     }
     for claim in claims_of(DOCUMENT):
-        # What is undetermined by a gate or a start is listed under these.
-        if claim.verdict == "underdetermined" and claim.id not in (
-            "figure3-velocity",
-            "range-most",
-        ):
+        if claim.verdict == "underdetermined":
             assert claim.id in listed, claim.id
 
 
