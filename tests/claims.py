@@ -54,6 +54,8 @@ def check_flips(document, evidence):
                 assert _verdict(claim, one, right) in ("reproduced", "typical"), claim.id
             for wrong in _wrong(claim, one):
                 assert _verdict(claim, one, wrong) in ("contradicted", "atypical"), claim.id
+            if isinstance(one, Estimate) and one.low < one.value < one.high:
+                assert _verdict(claim, one, one.value) == "underdetermined", claim.id
 
 
 def _verdict(claim, evidence, published):
