@@ -47,7 +47,7 @@ def evidence(*, rng, runs=200):
         **settings_and_formulas(),
         **one_radar(runs, simulated, resampled),
         **two_radars(runs, simulated, resampled),
-        **real_radars(runs, walked),
+        **real_radars(2 * runs, walked),
     }
 
 

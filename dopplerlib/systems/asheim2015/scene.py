@@ -1,6 +1,6 @@
 """Tracks, what both radars measure of them, and the noise (Chapter 5)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,6 +35,10 @@ class Records:
     ranges: np.ndarray
     z: np.ndarray
     offset: float
+
+    def first(self, runs):
+        """Return the records of the first `runs` runs."""
+        return replace(self, z=self.z[:runs])
 
     @property
     def baseline(self):
