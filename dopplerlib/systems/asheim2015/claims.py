@@ -6,7 +6,6 @@ from ... import _checks
 from ...estimation.linear_kalman import _predict, _update
 from ...estimation.radial_velocity import radial_velocity_terms, radial_velocity_update
 from ...evaluation.intervals import share_interval
-from ...evaluation.range_bounds import range_crlb
 from ...evaluation.verdicts import Draws, Readings
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...model.ranging_noise import detection_probability
@@ -18,6 +17,7 @@ from .stand_in import WALKS, walk
 from .two_radars import (
     error_area,
     filter_then_triangulate,
+    one_scan_bound,
     polar_jacobian,
     raw_positions,
     triangulate,
@@ -304,10 +304,7 @@ def _range_at(radar, time):
 
 
 def _across(baseline):
-    sensors = radars(baseline)
-    p = np.array(scenario()["error_area"]["position"])
-    sigma = deviations(np.hypot(*(p - sensors).T))[:, 0]
-    return range_crlb(p, sensors, sigma)[0, 0]
+    return one_scan_bound(scenario()["error_area"]["position"], baseline)[0, 0]
 
 
 def _influence_ratio():

@@ -40,6 +40,10 @@ class Records:
         """Return the records of the first `runs` runs."""
         return replace(self, z=self.z[:runs])
 
+    def with_offset(self, offset):
+        """Return the records as they look to whoever believes in another offset, in s."""
+        return replace(self, offset=offset)
+
     @property
     def baseline(self):
         """Distance between the radars in m."""

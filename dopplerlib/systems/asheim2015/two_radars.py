@@ -7,12 +7,14 @@ import numpy as np
 from ... import _checks
 from ...estimation.extended_update import ekf_update
 from ...estimation.linear_kalman import _predict, _update
+from ...evaluation.range_bounds import range_crlb
 from ...model.kinematics import ncv_transition, wna_process_noise
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...tracking.bilateration import bilaterate
 from ...tracking.gates import chi2_gate, fixed_box_gate
 from .one_radar import filter_radar
 from .published import deviations, scenario
+from .scene import radars
 
 
 @dataclass(frozen=True)
@@ -317,3 +319,23 @@ def _step(x, P, z, sensor, settings):
     xu, Pu, _, _ = _update(x, P, nu + linear, H, R)
     x = np.where(accept[:, None], xu, x)
     return x, np.where(accept[:, None, None], Pu, P), accept, nis
+
+
+def one_scan_bound(p, baseline=None):
+    """Return the least covariance of a position from the two ranges of one scan.
+
+    Parameters
+    ----------
+    p : array_like, shape (..., 2)
+        True positions in m.
+    baseline : float, optional
+        In m; 1 m if None.
+
+    Returns
+    -------
+    ndarray, shape (..., 2, 2)
+        The bound of `range_crlb` with the noise that Eq 5.1 has at each range, in m^2.
+    """
+    p, sensors = _checks.finite("p", p, (2,)), radars(baseline)
+    lines = p[..., None, :] - sensors
+    return range_crlb(p, sensors, deviations(np.hypot(lines[..., 0], lines[..., 1]))[..., 0])
