@@ -38,6 +38,23 @@ def finite(name, value, shape=None):
     return array
 
 
+def finite_complex(name, value, shape=None):
+    """Return `value` as a complex array, or raise if it is not finite or not of `shape`.
+
+    Real numbers are complex ones; everything else that `real` refuses is refused here as well.
+    """
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):  # a ragged nested list
+        array = None
+    if array is None or array.dtype.kind != "c" or isinstance(value, np.ma.MaskedArray):
+        return finite(name, value, shape).astype(complex)
+    array = array.astype(complex, copy=False)
+    check_shape(name, array, shape)
+    _check_all(name, "finite", array, np.isfinite(array))
+    return array
+
+
 def check_shape(name, array, shape):
     """Raise unless the last axes of `array` have `shape`."""
     if shape is None:
@@ -125,6 +142,14 @@ def whole_number(name, value, least=1):
     if not whole or not least <= value < 2**63:
         raise ValueError(f"{name} must be a whole number of at least {least}, got {_short(value)}")
     return int(value)
+
+
+def increasing_pair(name, value):
+    """Return `value` as two floats, or raise unless they are finite and the second is larger."""
+    array = finite(name, value, (2,))
+    if array.ndim != 1 or not array[0] < array[1]:
+        raise ValueError(f"{name} must be two numbers, the smaller one first, got {_short(value)}")
+    return float(array[0]), float(array[1])
 
 
 def one_of(name, value, choices):

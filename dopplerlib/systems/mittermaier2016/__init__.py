@@ -4,16 +4,53 @@ Extended Kalman Doppler tracking and model determination for multi-sensor short-
 Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
-from .published import PublishedFigure6, Table2, published_figure6, quoted, scenario, table2
+from .causes import Consistency, consistency_runs, matched_P0, switched_ekf
+from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
+from .faults import faulty_filters, linear_filter, linear_world
+from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
+from .published import (
+    PublishedFigure3,
+    PublishedFigure6,
+    Table2,
+    published_figure3,
+    published_figure6,
+    quoted,
+    scenario,
+    table2,
+)
+from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
 from .tracking import Figure6, figure6
 
 __all__ = [
+    "ORIENTATIONS",
+    "Consistency",
+    "ErrorMap",
     "Figure6",
+    "PublishedFigure3",
     "PublishedFigure6",
+    "Reading",
+    "Starts",
     "Table2",
+    "comparable",
+    "consistency_runs",
+    "faulty_filters",
+    "figure3",
+    "figure3_bound",
+    "figure3_readings",
+    "figure3_score",
     "figure6",
+    "linear_filter",
+    "linear_world",
+    "matched_P0",
+    "published_figure3",
     "published_figure6",
     "quoted",
+    "samples_needed",
     "scenario",
+    "shares_above",
+    "start_box",
+    "start_misfit",
+    "switched_ekf",
     "table2",
+    "table2_starts",
 ]

@@ -1,11 +1,13 @@
 """What the paper prints and draws, from ``data/mittermaier2016``."""
 
 import json
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ...model.radar_array import RadarArray
 from ...model.scenario import Scenario
 
 DATA = Path(__file__).parents[3] / "data" / "mittermaier2016"
@@ -25,6 +27,53 @@ class Table2:
 
     x0: np.ndarray
     x_ml: np.ndarray
+
+
+@dataclass(frozen=True)
+class PublishedFigure3:
+    """The two error maps of Fig 3, read off a pixel image, and the settings that go with them.
+
+    The first axis of a map is x, upwards in the figure; the second is y, to the right.
+
+    Attributes
+    ----------
+    x, y : ndarray, shape (39,)
+        Places in m.
+    error : ndarray, shape (2, 39, 39)
+        Errors in m, one map for each entry of `samples`; NaN where not known.
+    below : ndarray of bool, shape (2, 39, 39)
+        Where the error is only known to be below `lowest`.
+    array : RadarArray
+        Sensors as the figure draws them.
+    velocity : ndarray, shape (3,)
+        Of the target in m/s, the same at every place.
+    samples : tuple of int
+        Number of samples behind each map.
+    T, sigma_f : float
+        Sampling interval in s, standard deviation of the Doppler shifts in Hz.
+    top_speed : float
+        Speed of the drives in m/s, to which the search is restricted.
+    lowest, highest : float
+        First and last contour in m.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    error: np.ndarray
+    below: np.ndarray
+    array: RadarArray
+    velocity: np.ndarray
+    samples: tuple
+    T: float
+    sigma_f: float
+    top_speed: float
+    lowest: float
+    highest: float
+
+    @property
+    def shown(self):
+        """Errors for drawing, in m: `lowest` where only known to be below it."""
+        return np.where(self.below, self.lowest, self.error)
 
 
 @dataclass(frozen=True)
@@ -87,6 +136,41 @@ def table2():
             np.array([printed[key][name] for name in names])
             for key in ("true_initial_state", "estimated_initial_state_mle")
         )
+    )
+
+
+def published_figure3():
+    """Return the digitized error maps of Fig 3.
+
+    Returns
+    -------
+    PublishedFigure3
+    """
+    settings = tomllib.loads((DATA / "figure3.toml").read_text(encoding="utf-8"))
+    array, sampling = dict(settings["array"]), settings["sampling"]
+    if array.pop("shape") != "linear":
+        raise ValueError("array in figure3.toml must have the shape linear")
+    panels = [
+        np.genfromtxt(DATA / f"fig3_{side}.csv", delimiter=",", names=True)
+        for side in ("left", "right")
+    ]
+    x, y = np.unique(panels[0]["x_m"]), np.unique(panels[0]["y_m"])
+    error, flag = (
+        np.reshape([panel[name] for panel in panels], (len(panels), len(x), len(y)))
+        for name in ("error_m", "flag")
+    )
+    return PublishedFigure3(
+        x=x,
+        y=y,
+        error=error,
+        below=flag == 2,
+        array=RadarArray.linear(**array),
+        velocity=np.array(settings["target"]["velocity"]),
+        samples=tuple(sampling["samples"]),
+        T=sampling["T"],
+        sigma_f=sampling["sigma_f"],
+        **settings["search"],
+        **settings["drawing"],
     )
 
 

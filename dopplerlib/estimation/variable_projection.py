@@ -1,0 +1,66 @@
+"""The best velocity at a given position: a linear problem inside a nonlinear one."""
+
+import numpy as np
+
+from .. import _checks
+from ..model.doppler import doppler_jacobian
+from ..model.radar_array import RadarArray
+
+
+def best_velocity(z, array, sigma_f, p, in_plane=False):
+    """Return the velocity that explains Doppler shifts best if the position is known.
+
+    Parameters
+    ----------
+    z : array_like, shape (N,)
+        Doppler shifts in Hz, one sample or the mean of several.
+    array : RadarArray
+        The N sensors.
+    sigma_f : array_like, broadcast to (N,)
+        Standard deviation of the shifts in Hz.
+    p : array_like, shape (..., 3)
+        Positions in m.
+    in_plane : bool
+        Whether v_z is known to be zero.
+
+    Returns
+    -------
+    v : ndarray, shape (..., 3)
+        Velocities in m/s; the shortest one where several are equally good.
+    cost : ndarray, shape (...)
+        What is left of the misfit: the sum of the squared residuals over their variances.
+
+    Raises
+    ------
+    ValueError
+        If an argument has the wrong shape, is not finite or not positive where it has to be, or a
+        position is that of a sensor.
+
+    Notes
+    -----
+    The Doppler shift is linear in the velocity, z = A(p) v, where the rows of A are the unit
+    vectors towards the sensors times 2 / wavelength. So v is a linear least-squares estimate, and
+    the cost a function of position only: variable projection, Golub and Pereyra (1973).
+
+    Examples
+    --------
+    >>> from dopplerlib import doppler_shift
+    >>> array = RadarArray.ring(6, 0.2)
+    >>> z = doppler_shift([0.8, 0.1, 0.1, -0.7, 0, 0.2], array)
+    >>> v, cost = best_velocity(z, array, 0.4, [0.8, 0.1, 0.1])
+    >>> (v.round(6) + 0.0).tolist(), bool(cost < 1e-9)
+    ([-0.7, 0.0, 0.2], True)
+    """
+    _checks.instance("array", array, RadarArray)
+    z = _checks.finite("z", z, (len(array),))
+    if z.ndim != 1:
+        raise ValueError(f"z must be one sample, got an array of shape {z.shape}")
+    sigma_f = _checks.each_run("sigma_f", _checks.deviation("sigma_f", sigma_f), (len(array),), ())
+    p = _checks.finite("p", p, (3,))
+    A = doppler_jacobian(np.concatenate([p, 0 * p], axis=-1), array)[..., 3:] / sigma_f[:, None]
+    A[..., 2] *= not in_plane
+    y = z / sigma_f
+    # A direction that no sensor sees leaves a singular value of 1e-16.
+    v = np.linalg.pinv(A, rcond=1e-12) @ y
+    residual = y - np.einsum("...ni,...i->...n", A, v)
+    return v, np.sum(residual**2, axis=-1)

@@ -1,0 +1,200 @@
+"""Averages of NIS and NEES: how many independent values they are worth; and their median."""
+
+import numpy as np
+
+from .. import _checks
+
+
+def average_interval(dof, samples, confidence=0.95):
+    """Return where the average of chi-square values lies that are worth `samples` independent ones.
+
+    Parameters
+    ----------
+    dof : int
+        Degrees of freedom of one value.
+    samples : float
+        Effective number of independent values, which needs not be whole; see `effective_samples`
+        and `nees_samples`.
+    confidence : float
+        Probability that the average lies inside.
+
+    Returns
+    -------
+    lower, upper : float
+        Bounds of the central interval.
+
+    Raises
+    ------
+    ValueError
+        If `dof` is not a positive whole number, `samples` is not positive, or `confidence` is not
+        between 0 and 1.
+
+    Notes
+    -----
+    For a whole number of independent values it is `chi2_interval`, and exact. Otherwise the average
+    is taken for a multiple of a chi-square variable with the same mean and variance
+    (Satterthwaite 1946).
+
+    Examples
+    --------
+    A thousand values in a row that are worth only ten:
+
+    >>> [round(bound, 2) for bound in average_interval(6, 1000)]
+    [5.79, 6.22]
+    >>> [round(bound, 2) for bound in average_interval(6, 10)]
+    [4.05, 8.33]
+    """
+    from scipy.stats import chi2  # here: it takes longer to load than all the rest
+
+    dof = _checks.whole_number("dof", dof)
+    samples = _checks.positive_number("samples", samples)
+    tail = (1 - _checks.probability("confidence", confidence)) / 2
+    total = dof * samples
+    return float(chi2.ppf(tail, total) / samples), float(chi2.isf(tail, total) / samples)
+
+
+def effective_samples(autocorrelation, samples):
+    """Return how many independent values an average of correlated ones is worth.
+
+    Parameters
+    ----------
+    autocorrelation : array_like, shape (..., L)
+        Of the values, at lags 1 to L; zero beyond.
+    samples : int
+        Number of values averaged, K, more than L.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Variance of one value divided by the variance of the average.
+
+    Raises
+    ------
+    ValueError
+        If the autocorrelation is not finite or does not fit `samples`, or the variance that it
+        gives is not positive.
+
+    Notes
+    -----
+    K / (1 + 2 sum (1 - l/K) rho_l): the variance of a sum is the sum of all covariances, and lag l
+    occurs K - l times on either side.
+
+    Examples
+    --------
+    If neighbors are correlated by 0.9, and those m apart by 0.9^m, then 1000 values are worth
+    about 1000 (1 - 0.9) / (1 + 0.9):
+
+    >>> round(float(effective_samples(0.9 ** np.arange(1, 1000), 1000)))
+    53
+    """
+    autocorrelation = _checks.finite("autocorrelation", autocorrelation, (None,))
+    samples = _checks.whole_number("samples", samples)
+    lags = autocorrelation.shape[-1]
+    if lags >= samples:
+        raise ValueError(f"autocorrelation must have fewer lags than samples {samples}, got {lags}")
+    weight = 1 - np.arange(1, lags + 1) / samples
+    inflation = 1 + 2 * np.sum(weight * autocorrelation, axis=-1)
+    if not (inflation > 0).all():
+        raise ValueError(
+            "autocorrelation must give an average of positive variance, got "
+            f"{inflation.min():.3g} times that of independent values"
+        )
+    return samples / inflation
+
+
+def nees_samples(P, F, Q):
+    """Return how many independent values the time average of NEES of one right filter is worth.
+
+    Parameters
+    ----------
+    P : array_like, shape (K, n, n)
+        Covariances after the updates, such as those of a `Track`.
+    F, Q : array_like, shape (n, n)
+        Transition matrix and covariance of the process noise.
+
+    Returns
+    -------
+    float
+        Between 1 and K: variance of one value, 2 n, divided by that of the average.
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not fit, or a matrix is not finite or no covariance.
+
+    Notes
+    -----
+    The error of a right linear filter follows e_k = A_k e_(k-1) + noise that is new, with
+    A_k = (I - K_k H_k) F = P_k (F P_(k-1) F' + Q)^-1 F. Divided by the factors of the covariances,
+    P = L L', errors at two times have the covariance C = L_k^-1 A_k ... A_(j+1) L_j, and being
+    Gaussian, their squared lengths have the covariance 2 |C|^2 (Frobenius).
+
+    Examples
+    --------
+    A constant with no noise of its own is averaged from measurements: all its errors are nearly
+    the same one.
+
+    >>> P = 1 / np.arange(1.0, 101)[:, None, None]
+    >>> round(nees_samples(P, [[1]], [[0]]), 1)
+    2.0
+    """
+    P = _checks.finite("P", P, (None, None))
+    n = P.shape[-1]
+    P = _checks.covariance("P", P, n)
+    if P.ndim != 3:
+        raise ValueError(f"P must have shape (K, n, n), got {P.shape}")
+    F = _checks.matrix("F", F, (n, n))
+    Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
+    L = np.linalg.cholesky(P)
+    predicted = F @ P[:-1] @ F.T + Q
+    # C of neighbors: L_k^-1 P_k = L_k', so that only the prediction has to be solved for.
+    step = L[1:].swapaxes(-1, -2) @ np.linalg.solve(predicted, F @ L[:-1])
+    C, total = step, 0.0
+    for lag in range(1, len(P)):
+        total += np.sum(C**2)
+        C = step[lag:] @ C[:-1]
+    return float(n * len(P) ** 2 / (n * len(P) + 2 * total))
+
+
+def median_interval(values, confidence=0.95):
+    """Return bounds for the median of the distribution from which runs were drawn.
+
+    Parameters
+    ----------
+    values : array_like, shape (runs, ...)
+        One value for each run, not NaN.
+    confidence : float
+        Probability, at least, that the median lies between the bounds.
+
+    Returns
+    -------
+    lower, upper : ndarray, shape (...)
+        Two of the values.
+
+    Raises
+    ------
+    ValueError
+        If `values` is not finite, `confidence` is not between 0 and 1, or there are too few runs.
+
+    Notes
+    -----
+    Each value is below the median with probability 1/2, whatever the distribution: the number below
+    is binomial, and counting decides which values to take.
+
+    Examples
+    --------
+    All of six values are on one side in 2 of 64 cases, so that the median is between the outermost
+    with a probability of 97 %:
+
+    >>> [float(bound) for bound in median_interval([3, 1, 4, 1.5, 9, 2.6])]
+    [1.0, 9.0]
+    """
+    from scipy.stats import binom
+
+    values = np.sort(_checks.finite("values", values, None), axis=0)
+    tail = (1 - _checks.probability("confidence", confidence)) / 2
+    runs = len(values)
+    out = int(binom.ppf(tail, runs, 0.5)) - 1  # at most so many below, with less than `tail`
+    if out < 0:
+        raise ValueError(f"values must be of more runs for this confidence, got {runs}")
+    return values[out], values[runs - 1 - out]

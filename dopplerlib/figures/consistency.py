@@ -1,0 +1,207 @@
+"""Is it right? Chi-square, averages, clouds of errors, and the causes one at a time."""
+
+import numpy as np
+from matplotlib.patches import Ellipse
+
+from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, styled
+
+# A cause is told from the others by color, line and marker.
+CAUSES = (
+    (TRUTH, "-", "o"),
+    (BOUND, "--", "s"),
+    (ORANGE, "-", "v"),
+    (PINK, "-.", "D"),
+    (OURS, "-", "^"),
+    (SENSOR, "-", "P"),
+)
+
+
+def chi_square(densities, interval, sums, filled):
+    """Draw chi-square densities, one with its interval filled, over histograms of simulated sums.
+
+    Parameters
+    ----------
+    densities : dict of int to tuple of two ndarray, shape (M,)
+        For each number of degrees of freedom, places and density.
+    interval : tuple of float
+        What to fill.
+    sums : dict of int to ndarray, shape (R,)
+        For each number of degrees of freedom, sums of that many squares of normal numbers.
+    filled : int
+        Of which density.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.4) as figure:
+        ax = figure.subplots()
+        edges = np.linspace(0, 20, 81)
+        for (dof, (q, density)), (color, ls) in zip(densities.items(), VARIANTS, strict=False):
+            counts, _ = np.histogram(sums[dof], edges)
+            height = counts / len(sums[dof]) / np.diff(edges)
+            ax.stairs(height, edges, color=color, lw=0.8, alpha=0.5)
+            ax.plot(q, density, color=color, ls=ls, label=f"{dof} degrees of freedom")
+            if dof == filled:
+                inside = (q >= interval[0]) & (q <= interval[1])
+                ax.fill_between(
+                    q[inside], density[inside], color=color, alpha=0.2, lw=0,
+                    label=f"95 %: {interval[0]:.3f} to {interval[1]:.3f}",
+                )  # fmt: skip
+        ax.set(xlabel="sum of squares", ylabel="probability density", xlim=(0, 20), ylim=(0, 0.5))
+        ax.legend(loc="upper right")
+        return figure
+
+
+def clouds(errors, covariances, names):
+    """Draw errors of many runs in two components, and the ellipse in which 95 % should lie.
+
+    Parameters
+    ----------
+    errors : dict of str to ndarray, shape (runs, 2)
+        Errors for each filter, in m.
+    covariances : dict of str to ndarray, shape (2, 2)
+        What each filter believes.
+    names : sequence of str
+        The two components.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.6) as figure:
+        axes = figure.subplots(1, len(errors), sharex=True, sharey=True)
+        for ax, (label, error) in zip(axes, errors.items(), strict=True):
+            ax.plot(*error.T, "o", color=OURS, ms=2, alpha=0.4, mec="none", label="errors of runs")
+            size, axis = np.linalg.eigh(covariances[label])
+            # Two degrees of freedom: the probability outside is exp(-r^2 / 2).
+            width, height = 2 * np.sqrt(-2 * np.log(0.05) * size)
+            angle = np.degrees(np.arctan2(axis[1, 0], axis[0, 0]))
+            ax.add_patch(
+                Ellipse(
+                    (0, 0), width, height, angle=angle, fill=False, color=TRUTH, lw=1.6,
+                    label="95 %, says the filter",
+                )
+            )  # fmt: skip
+            ax.set_title(label)
+            ax.set(xlabel=f"{names[0]} in m", xlim=(-1, 1), ylim=(-0.6, 0.6))
+        axes[0].set_ylabel(f"{names[1]} in m")
+        axes[0].legend(loc="upper left")
+        return figure
+
+
+def one_run(time, values, interval):
+    """Draw statistics of a single run over time, with the interval of a single value.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    values : dict of str to ndarray, shape (K,)
+        Each statistic, by name.
+    interval : tuple of float
+        Where 95 % of the values lie.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 4.0) as figure:
+        axes = figure.subplots(len(values), sharex=True, sharey=True)
+        for ax, (name, value) in zip(axes, values.items(), strict=True):
+            ax.axhspan(*interval, color=BOUND, alpha=0.25, lw=0, label="95 % of single values")
+            ax.plot(time, value, color=OURS, lw=0.8, label="one run")
+            ax.set(ylabel=name, ylim=(0, 25))
+        axes[0].legend(loc="upper right", ncols=2)
+        axes[-1].set(xlabel="time in s", xlim=(time[0], time[-1]))
+        return figure
+
+
+def averages_spread(averages, intervals):
+    """Draw how time averages are distributed over right runs, with two intervals.
+
+    Parameters
+    ----------
+    averages : dict of str to ndarray, shape (runs,)
+        Time averages of each statistic, one for each run.
+    intervals : dict of str to dict of str to tuple of float
+        For each statistic, intervals by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.0) as figure:
+        axes = figure.subplots(1, len(averages), sharex=True)
+        for ax, (name, average) in zip(axes, averages.items(), strict=True):
+            ax.hist(average, np.linspace(2, 12, 81), color=OURS, alpha=0.45, label="right runs")
+            styles = ((TRUTH, "--"), (ORANGE, "-"))
+            for (label, interval), (color, ls) in zip(
+                intervals[name].items(), styles, strict=False
+            ):
+                for bound, text in zip(interval, (label, None), strict=True):
+                    ax.axvline(bound, color=color, ls=ls, label=text)
+            ax.set(xlabel=f"{name} averaged over a run", xlim=(2, 12))
+            ax.legend(loc="upper right")
+        axes[0].set_ylabel("runs")
+        return figure
+
+
+def causes(results, interval, median):
+    """Draw the median NEES and NIS of several filters over time, both axes logarithmic.
+
+    Parameters
+    ----------
+    results : dict of str to Consistency
+        Runs of each filter, by label.
+    interval : tuple of float
+        Where 95 % of single values of a consistent filter lie.
+    median : float
+        Their median.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 5.0) as figure:
+        axes = figure.subplots(1, 2, sharex=True, sharey=True)
+        for ax, name in zip(axes, ("nees", "nis"), strict=True):
+            ax.axhspan(*interval, color=BOUND, alpha=0.25, lw=0, label="95 % of right values")
+            ax.axhline(median, color=BOUND, lw=1, label="their median")
+            for (label, result), (color, ls, marker) in zip(results.items(), CAUSES, strict=False):
+                values = np.median(getattr(result, name), axis=0)
+                # The first sample, at 0, belongs to a logarithmic axis at one interval.
+                time = result.time + (result.time[1] - result.time[0])
+                ax.plot(time, values, color=color, ls=ls, marker=marker, ms=4, label=label)
+            ax.set(xscale="log", yscale="log", xlabel="time in s", ylim=(0.1, 1000))
+            ax.set_ylabel(f"median {name.upper()}")
+        handles, labels = axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=2)
+        return figure
+
+
+def claims(time, spread, claimed):
+    """Draw by how much the range is off, and what two filters say about it.
+
+    Parameters
+    ----------
+    time : ndarray, shape (M,)
+        Time since the start in s.
+    spread : ndarray, shape (M,)
+        Size of the actual error in m.
+    claimed : dict of str to ndarray, shape (M,)
+        Standard deviation of the range as each filter believes it, in m.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.4) as figure:
+        ax = figure.subplots()
+        ax.plot(time, spread, color=TRUTH, marker="o", ms=4, label="actual error of the EKF")
+        styles = ((OURS, "--", "s"), (SENSOR, "-.", "^"))
+        for (label, value), (color, ls, marker) in zip(claimed.items(), styles, strict=False):
+            ax.plot(time, value, color=color, ls=ls, marker=marker, ms=4, label=label)
+        ax.set(xscale="log", yscale="log", xlabel="time in s", ylabel="range in m")
+        ax.legend(loc="lower left")
+        return figure

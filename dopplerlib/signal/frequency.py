@@ -1,0 +1,203 @@
+"""A tone's frequency by maximum likelihood: alone, or together with a constant."""
+
+import numpy as np
+import scipy.fft
+
+from ._bins import limits, samples
+
+_CHUNK = 128  # transforms at a time: these stay in the processor's cache
+_PAD = 4  # points of the grid in a bin, for the search beside a constant
+_STEPS = 40
+
+
+def ml_frequency(x, fs, band=None):
+    """Return the frequency at which the periodogram is highest.
+
+    For one tone in white noise this is the maximum of the likelihood, amplitude and phase
+    unknown. It is found to rounding: the unpadded transform is refined by Newton's method, at every
+    place that could hold the highest peak.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples.
+    fs : float
+        Sampling rate in Hz.
+    band : tuple of float, optional
+        Lowest and highest frequency in Hz, at most fs apart; -fs/2 and fs/2 if None.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz, positive when the target approaches; NaN for samples that are all zero.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, there are less than two samples, `fs` is not positive, or `band`
+        is wider than fs.
+
+    Notes
+    -----
+    Rife and Boorstyn (1974). Mittermaier et al. (2016), Section 3.2, name a Fourier transform and
+    a search for its peak.
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone([123.4, -50.0], 10e3, 250, 20.0, rng=np.random.default_rng(1))
+    >>> ml_frequency(x, 10e3).round(0).tolist()
+    [123.0, -50.0]
+    """
+    x, fs = samples(x, fs)
+    rows = x.reshape(-1, x.shape[-1])
+    f, _ = peaks(
+        rows, np.arange(len(rows)), np.zeros(len(rows), dtype=int), rows.shape[1], fs, band
+    )
+    return f.reshape(x.shape[:-1])
+
+
+def peaks(x, rows, firsts, n, fs, band):
+    """Return frequency and power of the highest peak in each of many windows.
+
+    Parameters
+    ----------
+    x : ndarray of complex, shape (R, samples)
+        Records.
+    rows, firsts : ndarray of int, shape (W,)
+        In which record each window lies, and at which sample it begins.
+    n : int
+        Samples of a window.
+    fs, band
+        See `ml_frequency`.
+
+    Returns
+    -------
+    f : ndarray, shape (W,)
+        Frequencies in Hz.
+    power : ndarray, shape (W,)
+        Square of the absolute value of the Fourier sum there.
+    """
+    from ._ml_kernel import compiled  # here: numba takes half a second to load
+
+    low, high, circular = limits(band, fs)
+    if not len(rows):
+        return np.empty(0), np.empty(0)
+    # The search for the right peak needs single precision, in the range of 1; the rest is double.
+    re, im = x.real.ravel(), x.imag.ravel()
+    largest = max(np.abs(re).max(initial=0.0), np.abs(im).max(initial=0.0))
+    coarse = (x / largest if largest > 0 else x).astype(np.complex64)
+    starts = rows * x.shape[1] + firsts
+    windows = np.lib.stride_tricks.sliding_window_view(coarse.ravel(), n)
+    f, power = np.empty(len(starts)), np.empty(len(starts))
+    for a in range(0, len(starts), _CHUNK):
+        part = slice(a, a + _CHUNK)
+        X = scipy.fft.fft(windows[starts[part]], n if circular else 2 * n)
+        compiled(
+            X, re, im, starts[part], n, low * n / fs, high * n / fs, circular, f[part], power[part]
+        )
+    return f * (fs / n), power
+
+
+def ml_frequency_dc(x, fs, band=None):
+    """Return the frequency of a tone beside an unknown constant, by maximum likelihood.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples.
+    fs : float
+        Sampling rate in Hz.
+    band : tuple of float, optional
+        Lowest and highest frequency in Hz; -fs/2 and fs/2 if None.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz. Nothing tells a tone of less than a thousandth of a cycle in the window
+        from the constant: that is the smallest that is looked at.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, there are less than three samples, `fs` is not positive, or
+        `band` is wider than fs.
+
+    Notes
+    -----
+    With y the samples less their mean, Y their Fourier sum at f and D that of n ones, the
+    likelihood grows with |Y|^2 / (n - |D|^2 / n): the mean takes away from a slow tone too, and the
+    denominator gives it back.
+
+    Examples
+    --------
+    One cycle and a half beside a constant ten times as strong:
+
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = 10 + tone(60.0, 10e3, 250, 40.0, rng=np.random.default_rng(1))
+    >>> round(float(ml_frequency_dc(x, 10e3)))
+    60
+    """
+    x, fs = samples(x, fs, least=3)
+    n = x.shape[-1]
+    low, high, circular = limits(band, fs)
+    y = x - x.mean(axis=-1, keepdims=True)
+    nfft = _PAD * n
+    first, last = np.ceil(low / fs * nfft), np.floor(high / fs * nfft)
+    grid = np.arange(first, last + 1) if last > first else nfft / fs * np.array([low, high])
+    if circular:
+        grid = grid[:nfft]
+    if last > first:
+        Y = scipy.fft.fft(y, nfft)[..., grid.astype(int) % nfft]
+    else:
+        Y = y @ np.exp(-2j * np.pi * np.outer(np.arange(n), grid) / nfft)
+    u = grid / _PAD  # in bins
+    weight = n - _ones(u, n)[0] ** 2 / n
+    near = np.abs((u + n / 2) % n - n / 2) < 0.1
+    with np.errstate(invalid="ignore", divide="ignore"):
+        fit = np.where(near, 0.0, np.abs(Y) ** 2 / weight)
+    top = u[np.argmax(fit, axis=-1)]
+    # 0 itself is no candidate, so its neighbors stand for the range up to it and a little beyond.
+    left, right = top - 1 / _PAD, top + 1 / _PAD
+    if not circular:
+        left, right = np.maximum(left, low * n / fs), np.minimum(right, high * n / fs)
+    f = _climb(y, top, left, right) * fs / n
+    return low + (f - low) % fs if circular else f
+
+
+def _climb(y, u, low, high):
+    """Return where the likelihood beside a constant is highest between `low` and `high`, in bins.
+
+    Newton's method inside a bracket that shrinks, for all windows at once.
+    """
+    n = y.shape[-1]
+    t = np.arange(n) - (n - 1) / 2
+    c = 2 * np.pi / n
+    for _ in range(_STEPS):
+        u = np.where(np.abs(u) < 1e-3, np.where(u < 0, -1e-3, 1e-3), u)
+        turned = y * np.exp(-1j * c * t * u[..., None])
+        Y0, Y1, Y2 = turned.sum(-1), turned @ (-1j * c * t), turned @ (-(c**2) * t**2)
+        P0, P1 = np.abs(Y0) ** 2, 2 * (Y0.conj() * Y1).real
+        P2 = 2 * (np.abs(Y1) ** 2 + (Y0.conj() * Y2).real)
+        D0, D1, D2 = _ones(u, n)
+        W0, W1, W2 = n - D0**2 / n, -2 * D0 * D1 / n, -2 * (D1**2 + D0 * D2) / n
+        slope = (P1 * W0 - P0 * W1) / W0**2
+        bend = (P2 * W0 - P0 * W2) / W0**2 - 2 * W1 / W0 * slope
+        low, high = np.where(slope > 0, u, low), np.where(slope > 0, high, u)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            step = -slope / bend
+        newton = (bend < 0) & (u + step >= low) & (u + step <= high)
+        step = np.where(newton, step, (low + high) / 2 - u)
+        u = u + step
+        if np.all((np.abs(step) < 1e-7) | (high - low < 1e-7)):
+            break
+    return u
+
+
+def _ones(u, n):
+    """Return the Fourier sum of n ones about their middle, and its derivatives, at u bins."""
+    c = 2 * np.pi / n
+    t = np.arange(n) - (n - 1) / 2
+    angle = c * t * np.asarray(u)[..., None]
+    cos, sin = np.cos(angle), np.sin(angle)
+    return cos.sum(-1), sin @ (-c * t), cos @ (-(c**2) * t**2)

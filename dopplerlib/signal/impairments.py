@@ -1,0 +1,209 @@
+"""What a cheap receiver does to IQ samples, and how some of it is taken back."""
+
+import numpy as np
+
+from .. import _checks
+
+
+def add_dc(x, offset):
+    """Return IQ samples with a constant added, as leakage of the carrier adds it.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples.
+    offset : complex or array_like of complex, broadcast to (..., n)
+        The constant.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., n)
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite.
+
+    Examples
+    --------
+    >>> add_dc([1 + 1j, -1j], 0.5).tolist()
+    [(1.5+1j), (0.5-1j)]
+    """
+    x = _checks.finite_complex("x", x, (None,))
+    return x + _checks.finite_complex("offset", offset)
+
+
+def remove_mean(x):
+    """Return IQ samples less their mean over the last axis.
+
+    The mean of a tone is not zero unless the record holds whole cycles of it: this takes part of a
+    slow tone away. See `ml_frequency_dc`.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., n)
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite.
+
+    Examples
+    --------
+    >>> remove_mean([1, 2, 3]).real.tolist()
+    [-1.0, 0.0, 1.0]
+    """
+    x = _checks.finite_complex("x", x, (None,))
+    return x - x.mean(axis=-1, keepdims=True)
+
+
+def add_iq_imbalance(x, gain_db, phase_deg):
+    """Return IQ samples of a mixer whose branches differ.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples of an ideal mixer.
+    gain_db : float
+        Gain of Q over that of I in dB.
+    phase_deg : float
+        By how much the angle between I and Q exceeds 90 degrees.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., n)
+        I and g (Q cos phi + I sin phi): a circle becomes an ellipse, and beside every tone a
+        mirror image appears at the negative frequency, see `image_rejection`.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite.
+
+    Examples
+    --------
+    >>> add_iq_imbalance([1, 1j], 0.0, 30.0).round(3).tolist()
+    [(1+0.5j), 0.866j]
+    """
+    x = _checks.finite_complex("x", x, (None,))
+    g, phi = _imbalance(gain_db, phase_deg)
+    return x.real + 1j * g * (x.imag * np.cos(phi) + x.real * np.sin(phi))
+
+
+def image_rejection(gain_db, phase_deg):
+    """Return the power of a tone over that of its mirror image.
+
+    Parameters
+    ----------
+    gain_db, phase_deg : float
+        See `add_iq_imbalance`.
+
+    Returns
+    -------
+    float
+        Ratio of powers, not in dB; infinite for an ideal mixer.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite.
+
+    Examples
+    --------
+    >>> round(float(10 * np.log10(image_rejection(1.0, 5.0))), 1)
+    22.8
+    """
+    g, phi = _imbalance(gain_db, phase_deg)
+    kept, mirrored = np.abs(1 + g * np.exp(1j * phi)), np.abs(1 - g * np.exp(1j * phi))
+    with np.errstate(divide="ignore"):
+        return float(np.float64(kept) ** 2 / mirrored**2)
+
+
+def correct_iq_imbalance(x):
+    """Return IQ samples with branches of equal power and at right angles.
+
+    Gain and angle are found from the samples themselves: in those of an ideal mixer I and Q have
+    equal power and no correlation, over whole cycles or in the long run. A constant has to be
+    removed before.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples with mean zero.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., n)
+        I is kept.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, or I and Q are proportional: then nothing tells them apart.
+
+    Examples
+    --------
+    >>> x = np.exp(2j * np.pi * np.arange(8) / 8)
+    >>> bool(np.allclose(correct_iq_imbalance(add_iq_imbalance(x, 1.0, 5.0)), x))
+    True
+    """
+    x = _checks.finite_complex("x", x, (None,))
+    ii = np.mean(x.real**2, axis=-1, keepdims=True)
+    iq = np.mean(x.real * x.imag, axis=-1, keepdims=True)
+    qq = np.mean(x.imag**2, axis=-1, keepdims=True)
+    left = ii * qq - iq**2  # what of Q does not follow I
+    if not (left > 1e-12 * ii * qq).all():
+        raise ValueError("x must have an I and a Q that are not proportional to each other")
+    return x.real + 1j * (ii * x.imag - iq * x.real) / np.sqrt(left)
+
+
+def quantize(x, bits, full_scale):
+    """Return IQ samples as a converter with a limited number of bits gives them.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples.
+    bits : int
+        Bits for each of I and Q.
+    full_scale : float
+        Largest amplitude of I and Q; what lies beyond is clipped to the last step.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., n)
+        The middles of 2^bits equal steps from -full_scale to full_scale.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, `full_scale` is not positive, or `bits` is no whole number.
+
+    Notes
+    -----
+    The error is at most half a step. As noise it has the variance of step^2 / 12 in each of I and
+    Q, as long as the signal moves over several steps.
+
+    Examples
+    --------
+    >>> quantize([0.1 - 0.9j, 5.0], bits=2, full_scale=1.0).tolist()
+    [(0.25-0.75j), (0.75+0.25j)]
+    """
+    x = _checks.finite_complex("x", x, (None,))
+    levels = 2 ** _checks.whole_number("bits", bits)
+    step = 2 * _checks.positive_number("full_scale", full_scale) / levels
+
+    def steps(part):
+        return (np.clip(np.floor(part / step), -levels // 2, levels // 2 - 1) + 0.5) * step
+
+    return steps(x.real) + 1j * steps(x.imag)
+
+
+def _imbalance(gain_db, phase_deg):
+    gain_db = _checks.one_number("gain_db", gain_db)
+    return 10 ** (gain_db / 20), np.radians(_checks.one_number("phase_deg", phase_deg))

@@ -1,0 +1,332 @@
+"""A tone's frequency from the highest bins of a Fourier transform, in closed form.
+
+All take IQ samples ``x (..., n)`` and give frequencies ``(...)`` in Hz, positive when the target
+approaches. They look for the highest bin in the ``band``, (lowest, highest) in Hz; None is from
+-fs/2 to fs/2. A band from 0 to fs is as good, for targets that only approach.
+"""
+
+import numpy as np
+
+from .. import _checks
+from ._bins import Bins
+
+
+def peak_bin(x, fs, band=None, nfft=None):
+    """Return the frequency of the highest bin.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples.
+    fs : float
+        Sampling rate in Hz.
+    band : tuple of float, optional
+        Lowest and highest frequency in Hz; -fs/2 and fs/2 if None.
+    nfft : int, optional
+        Length of the transform, padded with zeros; n if None.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz, multiples of fs / nfft.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, `fs` is not positive, or `band` is wider than fs or holds no bin.
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(120.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> float(peak_bin(x, 1000.0))
+    120.0
+    """
+    bins = Bins(x, fs, band, nfft)
+    return bins.hertz(bins.peak())
+
+
+def parabolic(x, fs, band=None, nfft=None, scale="magnitude"):
+    """Return the vertex of the parabola through the highest bin and its two neighbors.
+
+    Parameters
+    ----------
+    x, fs, band, nfft
+        See `peak_bin`.
+    scale : {"magnitude", "log"}
+        Whether the parabola goes through magnitudes or through their logarithms.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz.
+
+    Raises
+    ------
+    ValueError
+        See `peak_bin`; or if `scale` is neither of the two.
+
+    Examples
+    --------
+    The shape of a peak is no parabola; padding brings the three points to its top:
+
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(123.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> [round(float(parabolic(x, 1000.0, nfft=nfft)), 2) for nfft in (100, 400)]
+    [120.74, 122.99]
+    """
+    _checks.one_of("scale", scale, ("magnitude", "log"))
+    bins = Bins(x, fs, band, nfft, least=3)
+    k = bins.peak()
+    y = [np.abs(bins.at(k + step)) for step in (-1, 0, 1)]
+    if scale == "log":
+        y = [np.log(value) for value in y]
+    return bins.hertz(k + (y[0] - y[2]) / (2 * (y[0] - 2 * y[1] + y[2])))
+
+
+def parabolic_three_highest(x, fs, band=None, nfft=None):
+    """Return the vertex of the parabola through the three highest bins, wherever they are.
+
+    For comparison only: without padding the third highest bin is often no neighbor of the
+    highest, and noise decides where it is.
+
+    Parameters
+    ----------
+    x, fs, band, nfft
+        See `peak_bin`.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz, anywhere: a flat parabola has its vertex far away.
+
+    Raises
+    ------
+    ValueError
+        See `peak_bin`; or if the band holds less than three bins.
+
+    Notes
+    -----
+    Valarmathi et al., Eqs 1 to 3, as printed.
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(123.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> round(float(parabolic_three_highest(x, 1000.0, nfft=400)), 2)
+    122.99
+    """
+    bins = Bins(x, fs, band, nfft, least=3)
+    if len(bins.inside) < 3:
+        raise ValueError(f"band must hold three bins, got {len(bins.inside)} in {band}")
+    magnitude = np.sqrt(bins.power())
+    order = np.argsort(magnitude, axis=-1)[..., -3:]
+    k = bins.inside[order].astype(float)
+    y = np.take_along_axis(magnitude, order, axis=-1)
+    # From the highest on, in Newton's divided differences: the vertex is where the slope is zero.
+    (k2, k1, k0), (y2, y1, y0) = np.moveaxis(k, -1, 0), np.moveaxis(y, -1, 0)
+    first = (y1 - y0) / (k1 - k0)
+    second = ((y2 - y1) / (k2 - k1) - first) / (k2 - k0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return (k0 + (k1 - k0) / 2 - first / (2 * second)) * bins.fs / bins.nfft
+
+
+def jacobsen(x, fs, band=None):
+    """Return the estimate of Jacobsen and Kootsookos from three complex bins.
+
+    Parameters
+    ----------
+    x, fs, band
+        See `peak_bin`.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz.
+
+    Raises
+    ------
+    ValueError
+        See `peak_bin`.
+
+    Notes
+    -----
+    Jacobsen and Kootsookos (2007), Eq 3.
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(123.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> round(float(jacobsen(x, 1000.0)), 2)
+    123.0
+    """
+    bins = Bins(x, fs, band, least=3)
+    k = bins.peak()
+    return bins.hertz(k + _jacobsen(bins, k))
+
+
+def candan(x, fs, band=None):
+    """Return the estimate of `jacobsen` without its bias for short windows.
+
+    Parameters
+    ----------
+    x, fs, band
+        See `peak_bin`.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz.
+
+    Raises
+    ------
+    ValueError
+        See `peak_bin`.
+
+    Notes
+    -----
+    Candan (2011): the offset times tan(pi / n) / (pi / n).
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(330.0, 1000.0, 10, None, rng=np.random.default_rng(1))
+    >>> round(float(jacobsen(x, 1000.0)), 1), round(float(candan(x, 1000.0)), 1)
+    (329.1, 330.1)
+    """
+    bins = Bins(x, fs, band, least=3)
+    k = bins.peak()
+    return bins.hertz(k + _jacobsen(bins, k) * np.tan(np.pi / bins.n) * bins.n / np.pi)
+
+
+def quinn1(x, fs, band=None):
+    """Return Quinn's first estimate: from the highest bin and the neighbor on the tone's side.
+
+    Parameters
+    ----------
+    x, fs, band
+        See `peak_bin`.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz.
+
+    Raises
+    ------
+    ValueError
+        See `peak_bin`.
+
+    Notes
+    -----
+    Quinn (1994).
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(123.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> round(float(quinn1(x, 1000.0)), 2)
+    123.0
+    """
+    bins = Bins(x, fs, band, least=3)
+    k = bins.peak()
+    left, right = _quinn(bins, k)
+    return bins.hertz(k + np.where((left > 0) & (right > 0), right, left))
+
+
+def quinn2(x, fs, band=None):
+    """Return Quinn's second estimate, which weights both neighbors.
+
+    Parameters
+    ----------
+    x, fs, band
+        See `peak_bin`.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz.
+
+    Raises
+    ------
+    ValueError
+        See `peak_bin`.
+
+    Notes
+    -----
+    Quinn (1997).
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(123.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> round(float(quinn2(x, 1000.0)), 2)
+    123.0
+    """
+    bins = Bins(x, fs, band, least=3)
+    k = bins.peak()
+    left, right = _quinn(bins, k)
+    return bins.hertz(k + (left + right) / 2 + _kappa(right**2) - _kappa(left**2))
+
+
+def aboutanios_mulgrew(x, fs, band=None, iterations=2):
+    """Return the estimate that compares the power half a bin to the left and to the right.
+
+    Parameters
+    ----------
+    x, fs, band
+        See `peak_bin`.
+    iterations : int
+        How often the comparison is repeated at the place it has led to.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz.
+
+    Raises
+    ------
+    ValueError
+        See `peak_bin`; or if `iterations` is no positive whole number.
+
+    Notes
+    -----
+    Aboutanios and Mulgrew (2005), their first algorithm: after two iterations the variance is
+    1.015 times the bound.
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(123.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> round(float(aboutanios_mulgrew(x, 1000.0)), 2)
+    123.0
+    """
+    iterations = _checks.whole_number("iterations", iterations)
+    bins = Bins(x, fs, band)
+    k = bins.peak()
+    x = np.asarray(x)
+    t = np.arange(bins.n) / bins.n
+    offset = np.zeros(k.shape)
+    for _ in range(iterations):
+        turned = x * np.exp(-2j * np.pi * t * (k + offset)[..., None])
+        left, right = turned @ np.exp(1j * np.pi * t), turned @ np.exp(-1j * np.pi * t)
+        offset = offset + ((right + left) / (right - left)).real / 2
+    return bins.hertz(k + offset)
+
+
+def _jacobsen(bins, k):
+    left, here, right = (bins.at(k + step) for step in (-1, 0, 1))
+    return ((left - right) / (2 * here - left - right)).real
+
+
+def _quinn(bins, k):
+    """Return where the tone lies after each neighbor, in bins."""
+    here = bins.at(k)
+    left, right = (bins.at(k - 1) / here).real, (bins.at(k + 1) / here).real
+    return left / (1 - left), -right / (1 - right)
+
+
+def _kappa(x):
+    root = np.sqrt(2 / 3)
+    ratio = (x + 1 - root) / (x + 1 + root)
+    return np.log(3 * x**2 + 6 * x + 1) / 4 - np.sqrt(6) / 24 * np.log(ratio)

@@ -1,0 +1,298 @@
+"""What a frequency estimate can reach: bounds, windows, thresholds, correlation of windows."""
+
+import numpy as np
+
+from .. import _checks
+
+# The variance of a frequency estimate from a window of length T is VARIANCE / (cn0 T^3).
+_VARIANCE = 6 / (2 * np.pi) ** 2
+
+
+def crlb_frequency_std(snr, n, fs):
+    """Return the smallest standard deviation of an unbiased estimate of a tone's frequency.
+
+    Parameters
+    ----------
+    snr : array_like, shape (...)
+        Power of the tone over the variance of a complex noise sample, not in dB.
+    n : array_like of int, broadcast to (...)
+        Number of samples, at least 2.
+    fs : float
+        Sampling rate in Hz.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Cramér-Rao lower bound in Hz, amplitude and phase unknown.
+
+    Raises
+    ------
+    ValueError
+        If `snr` or `fs` is not positive, or `n` is less than 2.
+
+    Notes
+    -----
+    Rife and Boorstyn (1974): the variance is 6 fs^2 / ((2 pi)^2 snr n (n^2 - 1)).
+
+    Examples
+    --------
+    >>> round(float(crlb_frequency_std(snr=10.0, n=250, fs=10e3)), 2)
+    0.31
+    """
+    snr = _checks.positive("snr", snr)
+    n = _checks.positive("n", n)
+    if (n < 2).any():
+        raise ValueError(f"n must be at least 2, got {n.min():g}")
+    return _checks.positive_number("fs", fs) * np.sqrt(_VARIANCE / (snr * n * (n**2 - 1)))
+
+
+def window_for_std(std, cn0):
+    """Return the length of the window in which a tone's frequency can be known so well.
+
+    Parameters
+    ----------
+    std : array_like, shape (...)
+        Wanted standard deviation in Hz.
+    cn0 : array_like, broadcast to (...)
+        Power of the tone over the noise power in 1 Hz, in Hz: snr times fs.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Length in s, for a window of many samples.
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive.
+
+    Notes
+    -----
+    The bound of `crlb_frequency_std` for large n, solved for T = n / fs.
+
+    Examples
+    --------
+    >>> round(1e3 * float(window_for_std(0.4, cn0=1e5)), 1)  # ms
+    21.2
+    """
+    std, cn0 = _checks.positive("std", std), _checks.positive("cn0", cn0)
+    return np.cbrt(_VARIANCE / (cn0 * std**2))
+
+
+def integrated_snr_for_std(std, T):
+    """Return the signal-to-noise ratio of a whole window that such an estimate needs.
+
+    Parameters
+    ----------
+    std : array_like, shape (...)
+        Wanted standard deviation in Hz.
+    T : array_like, broadcast to (...)
+        Length of the window in s.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        n times the ratio of a sample, not in dB. How many samples there are does not matter.
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive.
+
+    Notes
+    -----
+    The bound of `crlb_frequency_std` for large n, solved for n snr.
+
+    Examples
+    --------
+    >>> round(float(10 * np.log10(integrated_snr_for_std(0.4, 1e-3))), 1)  # dB
+    59.8
+    """
+    std, T = _checks.positive("std", std), _checks.positive("T", T)
+    return _VARIANCE / (std * T) ** 2
+
+
+def outlier_probability(integrated_snr, candidates):
+    """Return how often noise makes a higher peak than the tone does.
+
+    Parameters
+    ----------
+    integrated_snr : array_like, shape (...)
+        n times the signal-to-noise ratio of a sample, not in dB.
+    candidates : float
+        Number of independent places for a peak: n, or with a band its width times the window.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Probability that another place wins.
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive, or there are less than two candidates.
+
+    Notes
+    -----
+    Rife and Boorstyn (1974): the tone's power is noncentral chi-square distributed with two
+    degrees of freedom, every other one's is exponential; all are taken to be independent.
+
+    Examples
+    --------
+    >>> outlier_probability([10.0, 20.0], candidates=250).round(4).tolist()
+    [0.1445, 0.003]
+    """
+    from scipy.special import ive
+
+    s = _checks.positive("integrated_snr", integrated_snr)[..., None]
+    candidates = _checks.positive_number("candidates", candidates)
+    if candidates < 2:
+        raise ValueError(f"candidates must be at least 2, got {candidates:g}")
+    # The amplitude is Rice distributed: nine deviations of 0.7 around its mode hold all of it.
+    offset, weight = np.polynomial.legendre.leggauss(200)
+    low, high = np.maximum(np.sqrt(s) - 6.5, 0), np.sqrt(s) + 6.5
+    a = low + (high - low) * (offset + 1) / 2
+    density = 2 * a * np.exp(-((a - np.sqrt(s)) ** 2)) * ive(0, 2 * a * np.sqrt(s))
+    beaten = -np.expm1((candidates - 1) * np.log1p(-np.exp(-(a**2))))
+    return np.sum(weight * density * beaten, axis=-1) * (high - low)[..., 0] / 2
+
+
+def overlap_correlation(tau):
+    """Return the correlation of the errors of two overlapping windows.
+
+    Parameters
+    ----------
+    tau : array_like, shape (...)
+        Distance of the windows over their length.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        1 - 3 tau + 2 tau^3 up to tau = 1, and 0 beyond.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite.
+
+    Examples
+    --------
+    Half an overlap leaves less than nothing in common:
+
+    >>> overlap_correlation([0, 0.5, 0.75, 1]).tolist()
+    [1.0, -0.25, -0.40625, 0.0]
+    """
+    tau = np.abs(_checks.finite("tau", tau))
+    return np.where(tau < 1, 1 - 3 * tau + 2 * tau**3, 0.0)
+
+
+def overlap_correlation_discrete(n, lag):
+    """Return the correlation of the errors of two overlapping windows of n samples.
+
+    Parameters
+    ----------
+    n : int
+        Samples of a window, at least 2.
+    lag : array_like of int, shape (...)
+        Distance of the windows in samples.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    Raises
+    ------
+    ValueError
+        If `n` is no whole number of at least 2, or a lag is not finite.
+
+    Notes
+    -----
+    The error is the noise weighted with the distance from the middle of the window. In the
+    m = n - lag samples in common, the products of these weights add up to
+    (m (m^2 - 1) - 3 m lag^2) / 12.
+
+    Examples
+    --------
+    >>> overlap_correlation_discrete(250, [0, 10, 125, 250]).round(3).tolist()
+    [1.0, 0.88, -0.25, 0.0]
+    """
+    n = _checks.whole_number("n", n, least=2)
+    lag = np.abs(_checks.finite("lag", lag))
+    m = np.maximum(n - lag, 0)
+    products = np.where(m > 0, m * (m**2 - 1 - 3 * lag**2), 0.0)
+    return products / (n * (n**2 - 1))
+
+
+def optimal_window_end(cn0, chirp):
+    """Return the best length of a window whose estimate is used as the frequency at its end.
+
+    Parameters
+    ----------
+    cn0 : array_like, shape (...)
+        Power of the tone over the noise power in 1 Hz, in Hz.
+    chirp : array_like, broadcast to (...)
+        Rate of change of the frequency in Hz/s.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Length in s with the least mean-square error.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, `cn0` is not positive, or `chirp` is zero: then the longest
+        window is the best.
+
+    Notes
+    -----
+    The error is 6 / ((2 pi)^2 cn0 T^3) + (chirp T / 2)^2.
+
+    Examples
+    --------
+    >>> round(1e3 * float(optimal_window_end(cn0=1e5, chirp=50.0)), 1)  # ms
+    20.5
+    """
+    cn0, chirp = _checks.positive("cn0", cn0), _nonzero("chirp", chirp)
+    return (6 * _VARIANCE / (cn0 * chirp**2)) ** (1 / 5)
+
+
+def optimal_window_center(cn0, curvature):
+    """Return the best length of a window whose estimate is used as the frequency at its middle.
+
+    Parameters
+    ----------
+    cn0 : array_like, shape (...)
+        Power of the tone over the noise power in 1 Hz, in Hz.
+    curvature : array_like, broadcast to (...)
+        Second derivative of the frequency in Hz/s^2.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Length in s with the least mean-square error.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, `cn0` is not positive, or `curvature` is zero: then the longest
+        window is the best.
+
+    Notes
+    -----
+    The error is 6 / ((2 pi)^2 cn0 T^3) + (curvature T^2 / 40)^2.
+
+    Examples
+    --------
+    >>> round(1e3 * float(optimal_window_center(cn0=1e5, curvature=500.0)), 1)  # ms
+    68.8
+    """
+    cn0, curvature = _checks.positive("cn0", cn0), _nonzero("curvature", curvature)
+    return (1200 * _VARIANCE / (cn0 * curvature**2)) ** (1 / 7)
+
+
+def _nonzero(name, value):
+    array = _checks.finite(name, value)
+    if (array == 0).any():
+        raise ValueError(f"{name} must not be zero, got {value}")
+    return array

@@ -1,0 +1,98 @@
+"""A tone's frequency from how the phase turns between samples, without any spectrum."""
+
+import numpy as np
+
+from .. import _checks
+from ._bins import limits, samples
+
+
+def kay(x, fs, band=None):
+    """Return the weighted mean of the phase steps between neighboring samples.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples.
+    fs : float
+        Sampling rate in Hz.
+    band : tuple of float, optional
+        Steps are understood as frequencies within fs / 2 of the middle of this band; of 0 if None.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, `fs` is not positive, or `band` is wider than fs.
+
+    Notes
+    -----
+    Kay (1989). The weights are those of the best linear fit to the phase, so the bound is
+    reached while every single sample is well above the noise.
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(123.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> round(float(kay(x, 1000.0)), 2)
+    123.0
+    """
+    x, fs = samples(x, fs)
+    n = x.shape[-1]
+    low, high, _ = limits(band, fs)
+    middle = (low + high) / 2
+    steps = x[..., 1:] * x[..., :-1].conj() * np.exp(-2j * np.pi * middle / fs)
+    i = np.arange(1, n)
+    weights = 6 * i * (n - i) / (n * (n**2 - 1))
+    return middle + np.angle(steps) @ weights * fs / (2 * np.pi)
+
+
+def pulse_pair(x, fs, band=None, lag=1):
+    """Return the phase of the autocorrelation at one lag, as a frequency.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples.
+    fs : float
+        Sampling rate in Hz.
+    band : tuple of float, optional
+        The phase is understood as a frequency within fs / (2 lag) of the middle of this band;
+        of 0 if None.
+    lag : int
+        Distance in samples, less than n.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Frequencies in Hz.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, `fs` is not positive, `band` is wider than fs, or `lag` is not a
+        whole number from 1 to n - 1.
+
+    Notes
+    -----
+    The pulse-pair processor of weather radars; Lank, Reed and Pollon (1973) give its variance.
+
+    Examples
+    --------
+    >>> from dopplerlib.signal.synthesis import tone
+    >>> x = tone(123.0, 1000.0, 100, None, rng=np.random.default_rng(1))
+    >>> round(float(pulse_pair(x, 1000.0)), 2)
+    123.0
+    """
+    x, fs = samples(x, fs)
+    lag = _checks.whole_number("lag", lag)
+    if lag >= x.shape[-1]:
+        raise ValueError(f"lag must be less than the {x.shape[-1]} samples, got {lag}")
+    low, high, _ = limits(band, fs)
+    middle = (low + high) / 2
+    pair = np.sum(x[..., lag:] * x[..., :-lag].conj(), axis=-1)
+    pair = pair * np.exp(-2j * np.pi * middle * lag / fs)
+    return middle + np.angle(pair) * fs / (2 * np.pi * lag)

@@ -1,0 +1,244 @@
+"""IQ samples of moving targets: a tone, a course of velocity, or a path before an array."""
+
+import numpy as np
+
+from .. import _checks
+from ..model.doppler import check_clear_of_sensors
+from ..model.radar_array import RadarArray
+
+_AMPLITUDES = {"constant": 0, "r^-2": -2}
+
+
+def velocity_profile(t, v0, segments):
+    """Return a velocity that is accelerated during some intervals and constant otherwise.
+
+    Parameters
+    ----------
+    t : array_like, shape (n,)
+        Times in s.
+    v0 : float
+        Velocity before the first segment in m/s.
+    segments : sequence of tuple (float, float, float)
+        Start and end in s, and acceleration between them in m/s^2. Where segments overlap,
+        their accelerations add up.
+
+    Returns
+    -------
+    v : ndarray, shape (n,)
+        Velocity in m/s, exact at each time.
+    a : ndarray, shape (n,)
+        Acceleration in m/s^2; at a start that of the segment, at an end what follows.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, or a segment does not end after its start.
+
+    Examples
+    --------
+    From 250 m/s, for one second 10 m/s^2 slower:
+
+    >>> v, a = velocity_profile([0, 1, 1.5, 2, 3], 250, [(1, 2, -10)])
+    >>> v.tolist(), a.tolist()
+    ([250.0, 250.0, 245.0, 240.0, 240.0], [0.0, -10.0, -10.0, 0.0, 0.0])
+    """
+    t = _checks.finite("t", t, (None,))
+    v = np.full(t.shape, _checks.one_number("v0", v0))
+    a = np.zeros(t.shape)
+    for i, segment in enumerate(segments):
+        start, end, acceleration = _checks.finite(f"segments[{i}]", segment, (3,)).tolist()
+        if not start < end:
+            raise ValueError(f"segments[{i}] must end after its start, got {segment}")
+        v += acceleration * (np.clip(t, start, end) - start)
+        a += acceleration * ((t >= start) & (t < end))
+    return v, a
+
+
+def complex_noise(shape, variance, *, rng):
+    """Return circular white Gaussian noise.
+
+    Parameters
+    ----------
+    shape : int or tuple of int
+        Shape of the result.
+    variance : float
+        Variance of a complex sample; I and Q have half of it each.
+    rng : numpy.random.Generator
+        Source of randomness.
+
+    Returns
+    -------
+    ndarray of complex, shape `shape`
+
+    Raises
+    ------
+    ValueError
+        If `variance` is negative or not finite, or `rng` is not a generator.
+
+    Examples
+    --------
+    >>> noise = complex_noise(10000, 2.0, rng=np.random.default_rng(1))
+    >>> round(float(np.mean(np.abs(noise) ** 2)), 1)
+    2.0
+    """
+    _checks.generator("rng", rng)
+    variance = _checks.one_number("variance", variance)
+    if variance < 0:
+        raise ValueError(f"variance must not be negative, got {variance}")
+    noise = rng.standard_normal((*np.atleast_1d(shape), 2)).view(complex)[..., 0]
+    noise *= np.sqrt(variance / 2)
+    return noise
+
+
+def tone(f, fs, n, snr_db, *, rng, chirp=0.0):
+    """Return tones of amplitude 1 and random phase in white noise.
+
+    Parameters
+    ----------
+    f : array_like, shape (...)
+        Frequency at the middle of the window in Hz.
+    fs : float
+        Sampling rate in Hz.
+    n : int
+        Number of samples.
+    snr_db : float or None
+        Power of the tone over the variance of a complex noise sample in dB; None for no noise.
+    rng : numpy.random.Generator
+        Source of the phases and of the noise.
+    chirp : array_like, broadcast to (...)
+        Rate of change of the frequency in Hz/s.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., n)
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, `fs` or `n` is not positive, or `rng` is not a generator.
+
+    Examples
+    --------
+    >>> x = tone(250.0, 1000.0, 4, None, rng=np.random.default_rng(1))
+    >>> np.allclose(x / x[0], [1, 1j, -1, -1j])
+    True
+    """
+    _checks.generator("rng", rng)
+    f, chirp = np.broadcast_arrays(_checks.finite("f", f), _checks.finite("chirp", chirp))
+    fs = _checks.positive_number("fs", fs)
+    n = _checks.whole_number("n", n)
+    t = (np.arange(n) - (n - 1) / 2) / fs
+    cycles = f[..., None] * t + chirp[..., None] * t**2 / 2
+    return _signal(cycles, 1.0, snr_db, rng)
+
+
+def iq_from_velocity(v, T, wavelength, snr_db, *, rng, size=None):
+    """Return what one sensor sees of a target whose radial velocity is known.
+
+    Parameters
+    ----------
+    v : array_like, shape (..., n)
+        Speed of approach at each sample in m/s; between samples it is taken to be linear.
+    T : float
+        Sampling interval in s.
+    wavelength : float
+        In m.
+    snr_db : float or None
+        Power of the signal, of amplitude 1, over the variance of a noise sample in dB; None for
+        no noise.
+    rng : numpy.random.Generator
+        Source of the start phases and of the noise.
+    size : int, optional
+        Number of independent records.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., n) or (size, ..., n)
+        Doppler frequencies 2 v / wavelength, positive when the target approaches.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite or not positive where it has to be, or `rng` is not a generator.
+
+    Examples
+    --------
+    >>> x = iq_from_velocity([1.0, 1.0], 1 / 640, 0.0125, None, rng=np.random.default_rng(1))
+    >>> complex((x[1] / x[0]).round(12))  # a quarter turn: 160 Hz
+    1j
+    """
+    _checks.generator("rng", rng)
+    v = _checks.finite("v", v, (None,))
+    T = _checks.positive_number("T", T)
+    wavelength = _checks.positive_number("wavelength", wavelength)
+    cycles = np.zeros(v.shape)
+    np.cumsum((v[..., 1:] + v[..., :-1]) * (T / wavelength), axis=-1, out=cycles[..., 1:])
+    return _signal(cycles, 1.0, snr_db, rng, size)
+
+
+def iq_from_geometry(position, array, snr_db, *, rng, amplitude="constant", size=None):
+    """Return what every sensor of an array sees of a target on a path.
+
+    Parameters
+    ----------
+    position : array_like, shape (..., n, 3)
+        Position of the target at each sample in m.
+    array : RadarArray
+        The N sensors.
+    snr_db : float or None
+        Power of the signal over the variance of a complex noise sample in dB; with
+        ``amplitude="r^-2"`` it holds at a range of one meter. None for no noise.
+    rng : numpy.random.Generator
+        Source of the start phases, one for each sensor and record, and of the noise.
+    amplitude : {"constant", "r^-2"}
+        1 at every range, or the inverse square of the range in m, as the radar equation gives
+        it for a small target.
+    size : int, optional
+        Number of independent records of the same path.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., N, n) or (size, ..., N, n)
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, the path meets a sensor, `amplitude` is neither of the two, or
+        `rng` is not a generator.
+
+    Notes
+    -----
+    The wave travels the range r twice, so its phase is -4 pi r / wavelength, and its derivative
+    is 2 pi times the Doppler shift of Eq 6 of Mittermaier et al. (2016): positive when the
+    target approaches.
+
+    Examples
+    --------
+    One millimeter nearer is 0.16 cycles of 12.5 mm, there and back:
+
+    >>> from dopplerlib import RadarArray
+    >>> x = iq_from_geometry(
+    ...     [[1, 0, 0], [0.999, 0, 0]], RadarArray([[0, 0, 0]]), None, rng=np.random.default_rng(1)
+    ... )
+    >>> x.shape, round(float(np.angle(x[0, 1] / x[0, 0]) / (2 * np.pi)), 3)
+    ((1, 2), 0.16)
+    """
+    _checks.generator("rng", rng)
+    _checks.instance("array", array, RadarArray)
+    position = _checks.finite("position", position, (None, 3))
+    power = _AMPLITUDES[_checks.one_of("amplitude", amplitude, tuple(_AMPLITUDES))]
+    check_clear_of_sensors("position", position, array)
+    r = np.linalg.norm(position[..., None, :, :] - array.positions[:, None], axis=-1)
+    return _signal(-2 * r / array.wavelength, r**power, snr_db, rng, size)
+
+
+def _signal(cycles, amplitude, snr_db, rng, size=None):
+    """Return amplitude exp(2 pi j cycles) with a random phase for each record, and noise."""
+    if size is not None:
+        cycles = np.broadcast_to(cycles, (_checks.whole_number("size", size), *cycles.shape))
+    start = rng.uniform(size=(*cycles.shape[:-1], 1))
+    x = amplitude * np.exp(2j * np.pi * (cycles + start))
+    if snr_db is not None:
+        snr_db = _checks.one_number("snr_db", snr_db)
+        x += complex_noise(x.shape, 10 ** (-snr_db / 10), rng=rng)
+    return x

@@ -1,0 +1,28 @@
+"""Macaveiu, Campeanu, Nafornita (2013): an automotive radar, its waveforms, and a linear filter.
+
+Estimation of Automotive Target Trajectories by Kalman Filtering, Buletinul Stiintific al
+Universitatii Politehnica din Timisoara, Seria Electronica si Telecomunicatii, 58(72).
+
+Functions of the same name in several modules are reached through the module: `chain`, `crossing`,
+`lag`, `maneuvers`, `polar`, `regions`, `tracking`, `waveforms`.
+"""
+
+from . import chain, crossing, lag, maneuvers, polar, regions, tracking, waveforms
+from .published import KMH, Path2D, Settings, hard_turn, paths, settings
+
+__all__ = [
+    "KMH",
+    "Path2D",
+    "Settings",
+    "chain",
+    "crossing",
+    "hard_turn",
+    "lag",
+    "maneuvers",
+    "paths",
+    "polar",
+    "regions",
+    "settings",
+    "tracking",
+    "waveforms",
+]

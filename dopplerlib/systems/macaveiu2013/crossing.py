@@ -1,0 +1,129 @@
+"""Two pedestrians whose paths cross: nearest neighbor against the Hungarian algorithm."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _checks
+from ...model.kinematics import ncv_transition
+from .published import settings
+from .tracking import gain_sequence, measure
+
+WALK = 1.4  # m/s; ours, as everything here: the document names the algorithm and shows nothing
+RULES = ("each its nearest", "greedy", "Hungarian")
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """How two tracks came through a crossing.
+
+    Attributes
+    ----------
+    truth : ndarray, shape (2, K, 4)
+        True states.
+    x : ndarray, shape (runs, 2, K, 4)
+        Estimates.
+    swapped : ndarray of bool, shape (runs,)
+        The tracks are nearer to each other's target at the end.
+    lost : ndarray of bool, shape (runs,)
+        Both tracks follow one target at the end.
+    """
+
+    truth: np.ndarray
+    x: np.ndarray
+    swapped: np.ndarray
+    lost: np.ndarray
+
+
+def paths(angle, s=None):
+    """Return two straight paths that meet half way, 10 m ahead of the radar.
+
+    Parameters
+    ----------
+    angle : float
+        Angle between the headings in rad.
+    s : Settings, optional
+        Those of the data file if None.
+
+    Returns
+    -------
+    ndarray, shape (2, K, 4)
+    """
+    s = settings() if s is None else s
+    t = s.time - s.time.mean()
+    truth = np.empty((2, len(t), 4))
+    for one, sign in zip(truth, (1, -1), strict=True):
+        v = WALK * np.array([np.cos(angle / 2), sign * np.sin(angle / 2)])
+        one[:, 0], one[:, 1] = v[0] * t, v[0]
+        one[:, 2], one[:, 3] = 10 + v[1] * t, v[1]
+    return truth
+
+
+def follow(truth, rule, runs, *, rng, velocity=True, s=None):
+    """Track two targets whose detections come without names.
+
+    Parameters
+    ----------
+    truth : ndarray, shape (2, K, 4)
+        True states.
+    rule : {"each its nearest", "greedy", "Hungarian"}
+        Each track takes the detection with the smallest NIS, the other one's too; the best pair
+        first, the rest for the other; or the two pairs with the smallest sum.
+    runs : int
+        Number of independent records.
+    rng : numpy.random.Generator
+        Source of the noise.
+    velocity : bool
+        Whether the association looks at the velocities, or at the positions alone.
+    s : Settings, optional
+        Those of the data file if None.
+
+    Returns
+    -------
+    Crossing
+
+    Raises
+    ------
+    ValueError
+        If `rule` is unknown, `runs` is not a positive whole number, or `rng` is not a generator.
+
+    Notes
+    -----
+    Both targets are detected in every scan and have the same covariance, so that its inverse weighs
+    all pairs alike, and there are but two ways to make pairs.
+    """
+    _checks.one_of("rule", rule, RULES)
+    s = settings() if s is None else s
+    children = zip(truth, rng.spawn(2), strict=True)
+    z = np.stack([measure(one, runs, rng=child, s=s) for one, child in children], axis=1)
+    F, gains = ncv_transition(s.T), gain_sequence(s)
+    x = np.empty_like(z)
+    x[:, :, 0] = state = z[:, :, 0]
+    for k in range(1, z.shape[2]):
+        state = state @ F.T
+        # P + E_z = E_z (I - K)^{-1}, for each axis
+        S = np.kron(np.eye(2), s.E_z[:2, :2] @ np.linalg.inv(np.eye(2) - gains[k]))
+        nu = z[:, None, :, k] - state[:, :, None]  # (runs, track, detection, 4)
+        part = slice(None) if velocity else slice(0, None, 2)
+        weight = np.linalg.inv(S[part, part])
+        cost = np.einsum("...i,ij,...j", nu[..., part], weight, nu[..., part])
+        taken = np.take_along_axis(nu, _choice(cost, rule)[..., None, None], axis=2)[:, :, 0]
+        state = state + taken @ np.kron(np.eye(2), gains[k]).T
+        x[:, :, k] = state
+    off = np.linalg.norm(x[:, :, None, -1, ::2] - truth[:, -1, ::2], axis=-1)
+    nearest = off.argmin(axis=-1)
+    swapped = (nearest == [1, 0]).all(axis=1)
+    return Crossing(truth, x, swapped, nearest[:, 0] == nearest[:, 1])
+
+
+def _choice(cost, rule):
+    """Return the detection of each track, (runs, 2), from costs (runs, track, detection)."""
+    own = cost.argmin(axis=-1)
+    if rule == "each its nearest":
+        return own
+    if rule == "greedy":
+        best = cost.reshape(-1, 4).argmin(axis=1)
+        crossed = (best == 1) | (best == 2)
+    else:
+        crossed = cost[:, 0, 1] + cost[:, 1, 0] < cost[:, 0, 0] + cost[:, 1, 1]
+    return np.stack([crossed, ~crossed], axis=-1).astype(int)

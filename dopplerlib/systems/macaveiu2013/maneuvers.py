@@ -1,0 +1,115 @@
+"""Smoother, other noise, constant acceleration and interacting models, beside the filter."""
+
+import numpy as np
+
+from ...estimation.imm import imm
+from ...estimation.linear_kalman import kf
+from ...estimation.smoother import rts_smooth
+from ...model.kinematics import nca_transition, ncv_transition, wnj_process_noise
+from .published import settings
+
+STAY = 0.99  # probability that a model stays for one step; ours: a change every 100 steps, 3.8 s
+
+
+def cv(z, s=None):
+    """Return estimates of the document's filter, and those of the smoother that follows it.
+
+    Parameters
+    ----------
+    z : ndarray, shape (runs, K, 4)
+        Measurements [x, v_x, y, v_y].
+    s : Settings, optional
+        Those of the data file if None.
+
+    Returns
+    -------
+    filtered, smoothed : ndarray, shape (runs, K, 4)
+    """
+    s = settings() if s is None else s
+    F, E_z = ncv_transition(s.T), s.E_z
+    track = kf(z[:, 1:], F, s.E_x, np.eye(4), E_z, x0=z[:, 0], P0=E_z)
+    filtered = np.concatenate([z[:, :1], track.x], axis=1)
+    P = np.concatenate([E_z[None], track.P[0]])
+    return filtered, rts_smooth(filtered, P, F, s.E_x)[0]
+
+
+def ca(z, q, a_max, s=None):
+    """Return estimates of a filter of nearly constant acceleration.
+
+    Parameters
+    ----------
+    z : ndarray, shape (runs, K, 4)
+        Measurements.
+    q : float
+        Spectral density of the jerk in m^2/s^5.
+    a_max : float
+        Deviation of the acceleration before it is known, in m/s^2.
+    s : Settings, optional
+        Those of the data file if None.
+
+    Returns
+    -------
+    ndarray, shape (runs, K, 4)
+        Without the accelerations.
+    """
+    s = settings() if s is None else s
+    H = np.zeros((4, 6))
+    H[[0, 1, 2, 3], [0, 1, 3, 4]] = 1
+    x0 = z[:, 0] @ H
+    P0 = H.T @ s.E_z @ H + np.diag([0, 0, a_max**2] * 2)
+    track = kf(z[:, 1:], nca_transition(s.T), wnj_process_noise(s.T, q), H, s.E_z, x0, P0)
+    return np.concatenate([z[:, :1], track.x @ H.T], axis=1)
+
+
+def two_models(z, w, s=None):
+    """Return estimates of two interacting filters of constant velocity, a calm and an agile one.
+
+    Parameters
+    ----------
+    z : ndarray, shape (runs, K, 4)
+        Measurements.
+    w : sequence of two float
+        Velocity step of each model in m/s.
+    s : Settings, optional
+        Those of the data file if None.
+
+    Returns
+    -------
+    x : ndarray, shape (runs, K, 4)
+    agile : ndarray, shape (runs, K)
+        Probability of the second model.
+    """
+    s = settings() if s is None else s
+    F = np.stack([ncv_transition(s.T)] * 2)
+    Q = np.stack([s.with_(w=one).E_x for one in w])
+    switch = np.array([[STAY, 1 - STAY], [1 - STAY, STAY]])
+    track = imm(z[:, 1:], F, Q, np.eye(4), s.E_z, switch, x0=z[:, 0], P0=s.E_z)
+    half = np.full((len(z), 1), 0.5)
+    return (
+        np.concatenate([z[:, :1], track.x], axis=1),
+        np.concatenate([half, track.mode[..., 1]], axis=1),
+    )
+
+
+def rms(x, truth, where, component):
+    """Return the root mean square error of each run.
+
+    Parameters
+    ----------
+    x : ndarray, shape (runs, K, 4)
+        Estimates.
+    truth : ndarray, shape (K, 4)
+        True states.
+    where : ndarray of bool, shape (K,)
+        Samples that count.
+    component : {"position", "velocity"}
+        Which error.
+
+    Returns
+    -------
+    ndarray, shape (runs,)
+        In m or m/s.
+    """
+    part = slice(0, None, 2) if component == "position" else slice(1, None, 2)
+    error = (x - truth)[:, where, part]
+    return np.sqrt(np.mean(np.sum(error**2, axis=-1), axis=-1))

@@ -1,0 +1,156 @@
+"""What the radar of Section III measures, range, azimuth and range rate, and two filters for it."""
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.extended_update import ekf_update
+from ...estimation.linear_kalman import kf_update
+from ...estimation.track import Track
+from ...model.kinematics import ncv_transition
+from ...model.polar_radar import polar_position, polar_radar_h, polar_radar_jacobian
+from .published import polar, settings
+
+SIDEWAYS = 3.0  # m/s: deviation of the velocity across the line of sight before it is known; ours
+
+
+def noise():
+    """Return the covariance of range, azimuth and range rate, shape (3, 3)."""
+    sensor = polar()
+    return np.diag([sensor["sigma_r"], sensor["sigma_phi"], sensor["sigma_rate"]]) ** 2
+
+
+def measure(truth, runs, *, rng):
+    """Return polar measurements of a path, with noise.
+
+    Parameters
+    ----------
+    truth : ndarray, shape (K, 4)
+        True states [x, v_x, y, v_y].
+    runs : int
+        Number of independent records.
+    rng : numpy.random.Generator
+        Source of the noise.
+
+    Returns
+    -------
+    ndarray, shape (runs, K, 3)
+        Range in m, azimuth in rad, range rate in m/s.
+
+    Raises
+    ------
+    ValueError
+        If `runs` is not a positive whole number, or `rng` is not a generator.
+    """
+    runs = _checks.whole_number("runs", runs)
+    _checks.generator("rng", rng)
+    seen = polar_radar_h(truth)
+    draws = np.stack([child.standard_normal(seen.shape) for child in rng.spawn(runs)])
+    return seen + draws * np.sqrt(np.diag(noise()))
+
+
+def start(z):
+    """Return state and covariance from one polar measurement.
+
+    Parameters
+    ----------
+    z : ndarray, shape (..., 3)
+        Range, azimuth and range rate.
+
+    Returns
+    -------
+    x : ndarray, shape (..., 4)
+        The velocity across the line of sight is zero, for lack of knowledge.
+    P : ndarray, shape (..., 4, 4)
+    """
+    R = noise()
+    r, azimuth, rate = np.moveaxis(z, -1, 0)
+    along = np.stack([np.sin(azimuth), np.cos(azimuth)], axis=-1)
+    across = np.stack([np.cos(azimuth), -np.sin(azimuth)], axis=-1)
+
+    def spread(deviation_along, deviation_across):
+        return (
+            deviation_along**2 * along[..., :, None] * along[..., None, :]
+            + np.square(deviation_across)[..., None, None]
+            * across[..., :, None]
+            * across[..., None, :]
+        )
+
+    x = np.zeros((*z.shape[:-1], 4))
+    x[..., ::2] = r[..., None] * along
+    x[..., 1::2] = rate[..., None] * along
+    P = np.zeros((*z.shape[:-1], 4, 4))
+    P[..., ::2, ::2] = spread(R[0, 0] ** 0.5, r * R[1, 1] ** 0.5)
+    P[..., 1::2, 1::2] = spread(R[2, 2] ** 0.5, np.full(r.shape, SIDEWAYS))
+    return x, P
+
+
+def ekf(z, s=None):
+    """Track with range, azimuth and range rate as they are: an extended Kalman filter.
+
+    Parameters
+    ----------
+    z : ndarray, shape (runs, K, 3)
+        Polar measurements; NaN where a scan has none.
+    s : Settings, optional
+        Motion model; those of the data file if None.
+
+    Returns
+    -------
+    Track
+    """
+    s = settings() if s is None else s
+    R = noise()
+
+    def update(x, P, z):
+        return ekf_update(x, P, z, polar_radar_h, polar_radar_jacobian, R, wrap=(1,))
+
+    return _track(z, s, start(z[:, 0]), update)
+
+
+def naive(z, s=None):
+    """Track with the range rate taken for the velocity: the filter of Eqs 4 to 6 fed by a radar.
+
+    Parameters
+    ----------
+    z : ndarray, shape (runs, K, 3)
+        Polar measurements.
+    s : Settings, optional
+        Those of the data file if None.
+
+    Returns
+    -------
+    Track
+
+    Notes
+    -----
+    H = I asks for v_x and v_y. A radar has the range rate only; here it is turned into a vector
+    along the line of sight. E_z is the polar noise at the place of the target, turned into x and y.
+    """
+    s = settings() if s is None else s
+    along = polar_position(z) / z[..., :1]
+    full = np.zeros((*z.shape[:-1], 4))
+    full[..., ::2] = polar_position(z)
+    full[..., 1::2] = z[..., 2:] * along
+    sensor = polar()
+
+    def update(x, P, both):
+        cartesian, seen = both[..., :4], both[..., 4:]
+        _, E_z = start(seen)
+        # Whoever takes the vector for the velocity takes it to be as good across as along.
+        E_z[..., 1::2, 1::2] = sensor["sigma_rate"] ** 2 * np.eye(2)
+        return kf_update(x, P, cartesian, np.eye(4), E_z)
+
+    return _track(np.concatenate([full, z], axis=-1), s, start(z[:, 0]), update)
+
+
+def _track(z, s, begin, update):
+    F, Q = ncv_transition(s.T), s.E_x
+    x, P = begin
+    steps = [(x, P, np.full(len(x), np.nan))]
+    for k in range(1, z.shape[1]):
+        x, P = x @ F.T, F @ P @ F.T + Q
+        x, P, innovation, S = update(x, P, z[:, k])
+        weighted = np.linalg.solve(S, innovation[..., None])[..., 0]
+        steps.append((x, P, np.sum(innovation * weighted, axis=-1)))
+    x, P, score = (np.stack(values, axis=1) for values in zip(*steps, strict=True))
+    return Track(x, P, None, None, score, np.isfinite(score))

@@ -1,0 +1,246 @@
+"""Why the filter of the paper is too sure: its causes, each with a switch.
+
+`ekf` is what the paper prints. `switched_ekf` is the same filter in plain NumPy, with the two sides
+of linearization apart: where the tangent is taken, and how much the world bends away from it.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.extended_kalman import ekf
+from ...estimation.track import Track
+from ...evaluation.consistency import nees
+from ...model.doppler import doppler_jacobian, doppler_shift
+from ...model.motion import constant_velocity
+from ...model.simulation import simulate
+from .published import scenario, table2
+
+
+def switched_ekf(
+    z,
+    array,
+    x0,
+    P0,
+    T,
+    sigma_p,
+    sigma_f,
+    noise="common",
+    *,
+    path=None,
+    tangent_at="estimate",
+    curvature=1.0,
+    second_order=False,
+):
+    """Track a target like `ekf`, with the linearization under control.
+
+    Parameters
+    ----------
+    z : array_like, shape (runs, K, N)
+        Doppler measurements in Hz.
+    array : RadarArray
+        The N sensors.
+    x0 : array_like, shape (6,) or (runs, 6)
+        State one interval before the first sample, in m and m/s.
+    P0 : array_like, shape (6, 6)
+        Its covariance.
+    T, sigma_p, sigma_f : float
+        Sampling interval in s, standard deviations of the acceleration in m/s^2 and of a
+        measurement in Hz.
+    noise : {"common", "independent"}
+        See `constant_velocity`.
+    path : array_like, shape (K, 6), optional
+        A path known to the experimenter, usually the true one. Needed by the next two switches.
+    tangent_at : {"estimate", "path"}
+        Where the Jacobian is evaluated. With "path" it is the same in every run, and so is P.
+    curvature : float
+        How much of the bend there is, from 1, the Doppler shift as it is, to 0: the shift is what
+        the tangent says, as seen from the path. On the path nothing changes, whatever it is.
+    second_order : bool
+        Whether the filter knows of the bend to second order: the mean of what the tangent misses is
+        added to the predicted measurement, and its covariance to S.
+
+    Returns
+    -------
+    Track
+        P has the leading axis 1 if it is the same in every run, else ``runs``.
+
+    Raises
+    ------
+    ValueError
+        If `tangent_at` is unknown, a switch needs a path and there is none, or an argument has
+        the wrong shape.
+
+    Notes
+    -----
+    With curvature c, tangent H and the path x the predicted measurement is
+    c h(x^) + (1 - c) [h(x) + H (x^ - x)]. The filter of second order is that of Jazwinski (1970),
+    Section 9.3; its second derivatives are differences of the Jacobian.
+    """
+    z = _checks.finite("z", z, (None, None, len(array)))
+    x0, P = _checks.finite("x0", x0, (6,)), _checks.covariance("P0", P0, 6)[None]
+    _checks.one_of("tangent_at", tangent_at, ("estimate", "path"))
+    curvature = _checks.one_number("curvature", curvature)
+    if path is not None:
+        path = _checks.finite("path", path, (z.shape[1], 6))
+        shift, slope = doppler_shift(path, array), doppler_jacobian(path, array)
+    elif tangent_at == "path" or curvature != 1:
+        raise ValueError(f"path must be given with {tangent_at=} and {curvature=}, got None")
+    F, Q = constant_velocity(T, sigma_p, noise)
+    R = sigma_f**2 * np.eye(len(array))
+    x = np.broadcast_to(x0, (len(z), 6))
+    steps = []
+    for k in range(z.shape[1]):
+        x, P = x @ F.T, F @ P @ F.T + Q
+        H = slope[k] if tangent_at == "path" else doppler_jacobian(x, array)
+        predicted = curvature * doppler_shift(x, array) if curvature else 0.0
+        if curvature != 1:
+            straight = shift[k] + _times(H, x - path[k])
+            predicted = predicted + (1 - curvature) * straight
+        PHt = P @ np.swapaxes(H, -1, -2)
+        S = H @ PHt + R
+        if second_order:
+            mean, covariance = _missed(x, P, array)
+            predicted, S = predicted + curvature * mean, S + curvature**2 * covariance
+        gain = np.swapaxes(np.linalg.solve(S, np.swapaxes(PHt, -1, -2)), -1, -2)
+        innovation = z[:, k] - predicted
+        x = x + _times(gain, innovation)
+        # I - K H would do if S were H P H' + R; this holds with more in S as well.
+        A = np.eye(6) - gain @ H
+        extra = S - H @ PHt
+        P = A @ P @ np.swapaxes(A, -1, -2) + gain @ extra @ np.swapaxes(gain, -1, -2)
+        nis = np.sum(innovation * _times(np.linalg.inv(S), innovation), axis=-1)
+        steps.append((x, P, innovation, S, nis))
+    x, P, innovation, S, nis = (np.stack(part, axis=1) for part in zip(*steps, strict=True))
+    return Track(x, P, innovation, S, nis, np.ones(nis.shape, bool))
+
+
+@dataclass(frozen=True)
+class Consistency:
+    """What many runs of one filter gave, thinned in time.
+
+    Attributes
+    ----------
+    time : ndarray, shape (M,)
+        The moments kept, in s from the first sample.
+    truth : ndarray, shape (M, 6)
+        True states.
+    x : ndarray, shape (runs, M, 6)
+        Estimates.
+    P : ndarray, shape (runs or 1, M, 6, 6)
+        Their covariances as the filter believes them.
+    nees : ndarray, shape (runs, M)
+        Normalized estimation error squared.
+    nis : ndarray, shape (runs, M)
+        Normalized innovation squared.
+    nis_average : ndarray, shape (runs,)
+        Average of NIS over all samples of the record, not only those kept.
+    """
+
+    time: np.ndarray
+    truth: np.ndarray
+    x: np.ndarray
+    P: np.ndarray
+    nees: np.ndarray
+    nis: np.ndarray
+    nis_average: np.ndarray
+
+
+def consistency_runs(
+    runs, *, rng, keep=None, samples=None, start=None, P0=None, noise="common", sigma_f=None,
+    chunk=500, **switches,
+):  # fmt: skip
+    """Run the simulation example without a gate, and compare its errors with their covariances.
+
+    Parameters
+    ----------
+    runs : int
+        Number of independent records.
+    rng : numpy.random.Generator
+        Source of the measurement noise, see `simulate`: run 3 is the same in any number of runs.
+    keep : sequence of int, optional
+        Numbers of the samples to keep, from 0; all if None.
+    samples : int, optional
+        Length of the records; that of the scenario if None.
+    start : array_like, shape (6,) or (runs, 6), optional
+        Estimate at the first sample; that of Table 2 if None.
+    P0 : array_like, shape (6, 6), optional
+        Its covariance; that of the scenario, 0.1 I, if None.
+    noise : {"common", "independent"}
+        See `constant_velocity`.
+    sigma_f : array_like, broadcast to (K, N), optional
+        Standard deviation that the filter believes, in Hz; that of the scenario if None.
+    chunk : int
+        Runs filtered at a time, so that memory does not grow with `runs`.
+    **switches
+        `tangent_at`, `curvature`, `second_order` of `switched_ekf`, which is used if there are any;
+        its path is the truth.
+
+    Returns
+    -------
+    Consistency
+
+    Raises
+    ------
+    ValueError
+        If an argument is refused by `simulate`, `ekf` or `switched_ekf`.
+    """
+    s = scenario()
+    if samples is not None:
+        s = replace(s, samples=samples)
+    runs = _checks.whole_number("runs", runs)
+    keep = np.arange(s.samples) if keep is None else np.asarray(keep)
+    start = _checks.finite("start", table2().x_ml if start is None else start, (6,))
+    F, _ = constant_velocity(s.T, s.sigma_p)
+    before = np.broadcast_to(np.linalg.solve(F, start[..., None])[..., 0], (runs, 6))
+    settings = (s.P0 if P0 is None else P0, s.T, s.sigma_p)
+    sigma_f = s.sigma_f if sigma_f is None else sigma_f
+    parts = []
+    for first in range(0, runs, chunk):
+        rows = slice(first, min(first + chunk, runs))
+        truth, z = simulate(s, rows.stop - first, rng=rng)
+        args = (z, s.array, before[rows], *settings, sigma_f, noise)
+        if switches:
+            track = switched_ekf(*args, path=truth, **switches)
+        else:
+            track = ekf(*args, keep=("P",))
+        average = track.nis.mean(axis=-1)
+        track = replace(track, x=track.x[:, keep], P=track.P[:, keep], nis=track.nis[:, keep])
+        parts.append((track.x, track.P, nees(track, truth[keep]), track.nis, average))
+    x, P, squared, nis, average = (np.concatenate(part) for part in zip(*parts, strict=True))
+    if P.shape[0] != runs:
+        P = P[:1]
+    return Consistency(s.time[keep], truth[keep], x, P, squared, nis, average)
+
+
+def matched_P0():
+    """Return a covariance of the start whose size is that of the errors that Table 2 prints.
+
+    Returns
+    -------
+    ndarray, shape (6, 6)
+        Diagonal; the same variance for the three positions, in m^2, and for the three velocities,
+        in m^2/s^2, so that the mean squares of the two errors are the printed ones.
+    """
+    error = table2().x_ml - table2().x0
+    variance = [np.mean(error[:3] ** 2)] * 3 + [np.mean(error[3:] ** 2)] * 3
+    return np.diag(variance)
+
+
+def _times(matrix, vector):
+    if matrix.ndim == 2 or len(matrix) == 1:  # the same in every run: one product for all
+        return vector @ matrix.reshape(matrix.shape[-2:]).T
+    return (matrix @ vector[..., None])[..., 0]
+
+
+def _missed(x, P, array):
+    """Return mean (..., N) and covariance (..., N, N) of the second-order term."""
+    step = 1e-5 * np.eye(6)
+    bend = doppler_jacobian(x[..., None, :] + step, array)
+    bend = (bend - doppler_jacobian(x[..., None, :] - step, array)) / 2e-5
+    BP = bend.swapaxes(-3, -2) @ P[..., None, :, :]  # (..., N, 6, 6)
+    mean = np.trace(BP, axis1=-2, axis2=-1) / 2
+    flat = BP.reshape(*BP.shape[:-2], 36)
+    turned = BP.swapaxes(-1, -2).reshape(flat.shape)
+    return mean, flat @ turned.swapaxes(-1, -2) / 2

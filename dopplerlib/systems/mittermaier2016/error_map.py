@@ -1,0 +1,186 @@
+"""The error maps of Section 3.4, drawn anew as often as wanted (Fig 3)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.maximum_likelihood import ml_start
+from ...evaluation.bounds import crlb
+from ...model.doppler import doppler_shift
+from .published import published_figure3
+
+_IN_PLANE = np.array([True, True, False, True, True, False])
+
+
+@dataclass(frozen=True)
+class ErrorMap:
+    """Errors of maximum-likelihood starts all over the plane of Fig 3.
+
+    Attributes
+    ----------
+    position : ndarray, shape (39, 39, draws)
+        Distance in m between estimate and truth, by x and y of the true place; NaN on a sensor.
+    velocity : ndarray, shape (39, 39, draws)
+        The same of the velocity in m/s.
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+
+    @property
+    def state(self):
+        """Norm of the error of the whole state, meters and meters per second added as numbers."""
+        return np.hypot(self.position, self.velocity)
+
+
+def figure3(draws, *, rng, samples=1, likelihood="static", room=2.0, velocity=None):
+    """Estimate the state of a target at every place of Fig 3.
+
+    Parameters
+    ----------
+    draws : int
+        How often each place gets new noise.
+    rng : numpy.random.Generator
+        Source of the noise; every draw has a child of its own.
+    samples : int
+        Number of Doppler samples of the moving target.
+    likelihood : {"static", "moving"}
+        What the estimator assumes, see `ml_start`; without effect for one sample.
+    room : float
+        Half the side in m of the square that is searched. Not stated in the paper.
+    velocity : array_like, shape (3,), optional
+        Velocity of the target in m/s, in the plane; that of the paper if None.
+
+    Returns
+    -------
+    ErrorMap
+        Sensors and velocity are as the paper prints them: a line along y.
+
+    Raises
+    ------
+    ValueError
+        If an argument has the wrong shape, is not finite and positive where it has to be, or is
+        refused by `ml_start`.
+
+    Notes
+    -----
+    A line cannot tell a target from its reflection, so only the half of the square is searched in
+    which the target is, x >= 0 for a target on the line itself; z and v_z are known to be zero. The
+    speed is restricted to that of the drives, along each axis.
+    """
+    draws = _checks.whole_number("draws", draws)
+    samples = _checks.whole_number("samples", samples)
+    room = _checks.positive_number("room", room)
+    _checks.generator("rng", rng)
+    p = published_figure3()
+    states = _states(p, velocity)
+    path = np.repeat(states[:, None], samples, axis=1)
+    path[..., :3] += p.T * np.arange(samples)[:, None] * path[..., 3:]
+    clear = _clear(states, p.array)
+    z = np.full((len(states), draws, samples, len(p.array)), np.nan)
+    noise = [
+        child.standard_normal((len(states), samples, len(p.array))) for child in rng.spawn(draws)
+    ]
+    z[clear] = doppler_shift(path[clear], p.array)[:, None]
+    z += p.sigma_f * np.stack(noise, axis=1)
+    error = np.full((len(states), draws, 6), np.nan)
+    high = np.array([room, room, 0, p.top_speed, p.top_speed, 0])
+    low = -high
+    for ahead in (True, False):
+        here = clear & ((states[:, 0] >= 0) == ahead)
+        side = np.where(np.arange(6) == 0, 0, low if ahead else high)
+        box = (side, high) if ahead else (low, side)
+        found = ml_start(z[here], p.array, p.sigma_f, p.T, box, likelihood).x
+        error[here] = found - states[here, None]
+    shape = (len(p.x), len(p.y), draws)
+    return ErrorMap(
+        *(
+            np.linalg.norm(error[..., part], axis=-1).reshape(shape)
+            for part in (np.s_[:3], np.s_[3:])
+        )
+    )
+
+
+def figure3_bound(*, samples=1, likelihood="static", velocity=None):
+    """Return the least root mean square position error at every place of Fig 3.
+
+    Parameters
+    ----------
+    samples, likelihood, velocity
+        See `figure3`.
+
+    Returns
+    -------
+    ndarray, shape (39, 39)
+        Cramér-Rao bound in m by x and y; infinite where the information is singular, NaN on a
+        sensor.
+    """
+    p = published_figure3()
+    states = _states(p, velocity)
+    clear = _clear(states, p.array)
+    bound = np.full(len(states), np.nan)
+    P = crlb(states[clear], p.array, p.sigma_f, samples, p.T, likelihood, free=_IN_PLANE)
+    bound[clear] = np.sqrt(P[:, 0, 0] + P[:, 1, 1])
+    if samples == 1 or likelihood == "static":
+        # Exactly singular on the line of the sensors, where rounding leaves 1e-16 of two columns.
+        bound[clear & (states[:, 0] == 0)] = np.inf
+    return bound.reshape(len(p.x), len(p.y))
+
+
+def shares_above(error, limits, where):
+    """Return the share of places at which an error is above a limit.
+
+    Parameters
+    ----------
+    error : ndarray, shape (A, B, ...)
+        Errors by place.
+    limits : sequence of float, length L
+        In the unit of the errors.
+    where : ndarray of bool, shape (A, B)
+        Places that count. All of them stand for squares of one size, so this is a share of area.
+
+    Returns
+    -------
+    ndarray, shape (L, ...)
+        A place without a number is not above anything: an error that is only known to be small.
+    """
+    return np.stack([(error[where] > limit).mean(axis=0) for limit in limits])
+
+
+def comparable(published, panel):
+    """Return the places of Fig 3 at which an error can be compared, whichever way it is turned.
+
+    Parameters
+    ----------
+    published : PublishedFigure3
+        The digitized figure.
+    panel : int
+        0 for the left map, 1 for the right one.
+
+    Returns
+    -------
+    ndarray of bool, shape (39, 39)
+        Where the published error is known, or known to be small, and no sensor is: neither along
+        y, as printed, nor along x.
+    """
+    clear = _clear(_states(published, None), published.array).reshape(published.below.shape[1:])
+    known = ~np.isnan(published.error[panel]) | published.below[panel]
+    return known & clear & clear.T
+
+
+def _states(p, velocity):
+    """Return the target at all places, shape (39 * 39, 6); y runs fastest."""
+    v = p.velocity if velocity is None else _checks.finite("velocity", velocity, (3,))
+    if v.shape != (3,) or v[2]:
+        raise ValueError(f"velocity must be one vector in the plane z = 0, got {v.tolist()}")
+    states = np.zeros((len(p.x), len(p.y), 6))
+    states[..., 0], states[..., 1] = p.x[:, None], p.y
+    states[..., 3:] = v
+    return states.reshape(-1, 6)
+
+
+def _clear(states, array):
+    """Return whether a place is none of a sensor, whose coordinates have rounding errors."""
+    apart = np.linalg.norm(states[:, None, :3] - array.positions, axis=-1)
+    return apart.min(axis=1) > 1e-9

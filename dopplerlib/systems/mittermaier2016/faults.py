@@ -1,0 +1,121 @@
+"""A filter that is exactly right, and faults put into it one at a time.
+
+The world is the paper's example with its tangent in place of the Doppler shift: motion and
+measurement are linear, so that a Kalman filter with the right numbers is consistent, and whatever a
+test finds was put there.
+"""
+
+import numpy as np
+
+from ...model.doppler import doppler_jacobian, doppler_shift
+from ...model.motion import constant_velocity
+from .causes import switched_ekf
+from .published import scenario
+
+
+def linear_world(runs, *, rng):
+    """Return paths with random starts and pushes around the paper's, and their measurements.
+
+    Parameters
+    ----------
+    runs : int
+        Number of independent records.
+    rng : numpy.random.Generator
+        Source of starts, pushes and noise.
+
+    Returns
+    -------
+    truth : ndarray, shape (runs, K, 6)
+        True states: the start has the covariance of the scenario, 0.1 I, and each axis is pushed
+        independently with `sigma_p`.
+    z : ndarray, shape (runs, K, N)
+        What the tangent at the paper's path makes of them, with noise, in Hz.
+    """
+    s = scenario()
+    F, _ = constant_velocity(s.T, s.sigma_p)
+    pushes = s.sigma_p * rng.standard_normal((runs, s.samples, 3))
+    away = np.empty((runs, s.samples, 6))
+    state = rng.multivariate_normal(np.zeros(6), s.P0, size=runs)
+    for k in range(s.samples):
+        state = state @ F.T + pushes[:, k] @ np.hstack([s.T**2 / 2 * np.eye(3), s.T * np.eye(3)])
+        away[:, k] = state
+    z = s.sigma_f * rng.standard_normal((runs, s.samples, len(s.array)))
+    z += doppler_shift(s.truth, s.array)
+    z += (doppler_jacobian(s.truth, s.array) @ away[..., None])[..., 0]
+    return s.truth + away, z
+
+
+def linear_filter(z, *, noise="independent", sigma_f=None, sigma_p=None, P0=None, start=None):
+    """Track in the linear world.
+
+    Parameters
+    ----------
+    z : ndarray, shape (runs, K, N)
+        Measurements of `linear_world`.
+    noise : {"common", "independent"}
+        Process noise; "independent" is right.
+    sigma_f, sigma_p : float, optional
+        Standard deviations of the measurement in Hz and of the push in m/s^2; right if None.
+    P0 : ndarray, shape (6, 6), optional
+        Covariance of the start; right if None.
+    start : ndarray, shape (6,), optional
+        By how much the start is moved; not at all if None.
+
+    Returns
+    -------
+    Track
+        With P and S of leading axis 1.
+    """
+    s = scenario()
+    F, _ = constant_velocity(s.T, s.sigma_p)
+    before = np.linalg.solve(F, s.x0) + (0 if start is None else start)
+    return switched_ekf(
+        z, s.array, before, s.P0 if P0 is None else P0, s.T, sigma_p or s.sigma_p,
+        sigma_f or s.sigma_f, noise, path=s.truth, tangent_at="path", curvature=0.0,
+    )  # fmt: skip
+
+
+def faulty_filters(truth, z):
+    """Yield filters with one fault each, the first with none.
+
+    Parameters
+    ----------
+    truth : ndarray, shape (runs, K, 6)
+        States of `linear_world`.
+    z : ndarray, shape (runs, K, N)
+        Their measurements.
+
+    Yields
+    ------
+    label : str
+        What is wrong.
+    track : Track
+    F, Q : ndarray, shape (6, 6)
+        Motion as the filter believes it.
+    """
+    s = scenario()
+    biased = z + np.eye(len(s.array))[0] * s.sigma_f / 4
+    late = np.concatenate([z[:, :1].repeat(10, axis=1), z[:, :-10]], axis=1)
+    memory = np.empty_like(z)
+    noise = z - doppler_shift(s.truth, s.array)
+    noise -= (doppler_jacobian(s.truth, s.array) @ (truth - s.truth)[..., None])[..., 0]
+    memory[:, 0] = noise[:, 0]
+    for k in range(1, s.samples):
+        memory[:, k] = 0.3 * memory[:, k - 1] + np.sqrt(1 - 0.3**2) * noise[:, k]
+    memory += z - noise
+    blind = np.linalg.svd(doppler_jacobian(s.x0, s.array)).Vh[-1]
+    cases = {
+        "nothing": (z, {}),
+        "noise believed 10 % too small": (z, {"sigma_f": 0.9 * s.sigma_f}),
+        "noise believed 10 % too large": (z, {"sigma_f": 1.1 * s.sigma_f}),
+        "noise has a memory, 0.3": (memory, {}),
+        "one sensor off by sigma_f / 4": (biased, {}),
+        "10 samples late": (late, {}),
+        "pushes believed 3 times too small": (z, {"sigma_p": s.sigma_p / 3}),
+        "pushes believed 3 times too large": (z, {"sigma_p": 3 * s.sigma_p}),
+        "pushes believed common, Eq 17": (z, {"noise": "common"}),
+        "start 5 deviations off, blind way": (z, {"start": 5 * np.sqrt(s.P0[0, 0]) * blind}),
+    }
+    for label, (measured, settings) in cases.items():
+        sigma_p, kind = settings.get("sigma_p", s.sigma_p), settings.get("noise", "independent")
+        yield label, linear_filter(measured, **settings), *constant_velocity(s.T, sigma_p, kind)

@@ -1,0 +1,158 @@
+"""Which reading of Section 3.4 explains the maps of Fig 3 best, by likelihood."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr
+
+from ... import _checks
+
+QUANTITIES = ("position", "state", "velocity")
+
+
+def as_printed(values):
+    """Return a map as it is: sensors along y, the velocity of the text."""
+    return values
+
+
+def velocity_reversed(values):
+    """Return the map for the opposite v_x: reflected upside down, as the sensors stay."""
+    return values[::-1]
+
+
+def turned(values):
+    """Return the map with sensors and velocity turned by a quarter: sensors along x.
+
+    From +x towards -y; the other way is the same but for the sign of the velocity, to which the
+    errors of a static target are blind.
+    """
+    return np.swapaxes(values[::-1], 0, 1)
+
+
+def array_turned(values):
+    """Return the map with the sensors along x and the velocity of the text."""
+    return turned(values)[::-1]
+
+
+ORIENTATIONS = {
+    "as printed": as_printed,
+    "v_x reversed": velocity_reversed,
+    "array turned": array_turned,
+    "all turned": turned,
+}
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One reading of the figure and how well it explains what is drawn.
+
+    Attributes
+    ----------
+    orientation : str
+        One of `ORIENTATIONS`.
+    label : str
+        Which of the maps.
+    quantity : {"position", "state", "velocity"}
+        Whose error.
+    behind : float
+        By how much its log-likelihood is below that of the best reading.
+    deviation : float
+        Standard error of `behind`, from how it varies between places; zero for the best.
+    """
+
+    orientation: str
+    label: str
+    quantity: str
+    behind: float
+    deviation: float
+
+    def __str__(self):
+        """Return a line of a table, the loss with the half width of its 95 % interval."""
+        names = f"{self.orientation:13} {self.label:8} {self.quantity:8}"
+        return f"{names} {-self.behind:6.0f} +/- {1.96 * self.deviation:.0f}"
+
+
+def figure3_score(error, published, panel, *, width=0.15, stray=0.02):
+    """Return the log-likelihood of every published value under draws of an error.
+
+    Parameters
+    ----------
+    error : ndarray, shape (39, 39, draws)
+        Draws, as `figure3` makes them, oriented as the figure.
+    published : PublishedFigure3
+        The digitized figure.
+    panel : int
+        0 for the left map, 1 for the right one.
+    width : float
+        Standard deviation of the kernel that smooths the draws, in powers of ten.
+    stray : float
+        Share of values that may be anything: half of them below the lowest contour, half within
+        three powers of ten above it.
+
+    Returns
+    -------
+    ndarray, shape (39, 39)
+        Per power of ten. Where the published error is only known to be below the lowest contour,
+        the logarithm of the probability of that. NaN where it is hidden, and on the lines x = 0
+        and y = 0, on one of which every reading has its sensors.
+    """
+    if error.shape[:2] != published.error.shape[1:]:
+        raise ValueError(
+            f"error must have shape {published.error.shape[1:]} by draws, got {error.shape}"
+        )
+    width = _checks.positive_number("width", width)
+    stray = _checks.probability("stray", stray)
+    with np.errstate(divide="ignore"):
+        draw = np.log10(error)
+    value, below = np.log10(published.error[panel]), published.below[panel]
+    density = np.exp(-0.5 * ((value[..., None] - draw) / width) ** 2).mean(axis=-1)
+    density /= np.sqrt(2 * np.pi) * width
+    chance = ndtr((np.log10(published.lowest) - draw) / width).mean(axis=-1)
+    score = np.where(
+        below, np.log((1 - stray) * chance + stray / 2), np.log((1 - stray) * density + stray / 6)
+    )
+    axes = (np.abs(published.x)[:, None] < 1e-9) | (np.abs(published.y) < 1e-9)
+    return np.where(axes, np.nan, score)
+
+
+def figure3_readings(maps, published, panel, *, width=0.15):
+    """Compare readings of one map of Fig 3: its orientation, its estimator, its quantity.
+
+    Parameters
+    ----------
+    maps : dict of str to ErrorMap
+        Our draws by label, all of the same number.
+    published : PublishedFigure3
+        The digitized figure.
+    panel : int
+        0 for the left map, 1 for the right one.
+    width : float
+        See `figure3_score`.
+
+    Returns
+    -------
+    list of Reading
+        The best first.
+
+    Raises
+    ------
+    ValueError
+        If the maps have different numbers of draws: more of them give a smoother density.
+    """
+    numbers = {m.position.shape[-1] for m in maps.values()}
+    if len(numbers) != 1:
+        raise ValueError(f"maps must have the same number of draws, got {sorted(numbers)}")
+    scores = {
+        (orientation, label, quantity): figure3_score(
+            turn(getattr(m, quantity)), published, panel, width=width
+        )
+        for orientation, turn in ORIENTATIONS.items()
+        for label, m in maps.items()
+        for quantity in QUANTITIES
+    }
+    best = max(scores.values(), key=np.nansum)
+    readings = []
+    for names, score in scores.items():
+        loss = (best - score)[~np.isnan(score)]
+        readings.append(Reading(*names, loss.sum(), np.sqrt(loss.size) * loss.std()))
+    return sorted(readings, key=lambda reading: reading.behind)

@@ -1,0 +1,198 @@
+"""The start of the simulation example, estimated as often as wanted (Table 2)."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from ... import _checks
+from ...estimation.maximum_likelihood import Start, ml_start
+from ...evaluation.bounds import crlb
+from ...model.doppler import doppler_jacobian, doppler_shift
+from ...model.radar_array import RadarArray
+from ...model.simulation import simulate
+from .published import published_figure3, quoted, scenario
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Estimates of the first state of the simulation example from short records.
+
+    Attributes
+    ----------
+    start : Start
+        What `ml_start` returns, leading axis ``runs``.
+    position : ndarray, shape (runs,)
+        Distance in m between estimate and truth.
+    velocity : ndarray, shape (runs,)
+        The same of the velocity in m/s.
+    """
+
+    start: Start
+    position: np.ndarray
+    velocity: np.ndarray
+
+
+def start_box(reach=1.5, side=0.75, near=0.1):
+    """Return a room before the ring, and all velocities of the drives, as a box for `ml_start`.
+
+    Parameters
+    ----------
+    reach, near : float
+        Largest and least x in m.
+    side : float
+        Largest y and z in m, either way.
+
+    Returns
+    -------
+    lower, upper : ndarray, shape (6,)
+        In m and m/s. The paper says that position and velocity were restricted, and gives the
+        speed of the drives; the room is our assumption.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite and positive, or `near` is not below `reach`.
+    """
+    reach, near = _checks.positive_number("reach", reach), _checks.positive_number("near", near)
+    side = _checks.positive_number("side", side)
+    if near >= reach:
+        raise ValueError(f"near must be below reach, {reach}, got {near}")
+    v = published_figure3().top_speed
+    return np.array([near, -side, -side, -v, -v, -v]), np.array([reach, side, side, v, v, v])
+
+
+def table2_starts(runs, *, rng, samples=None, likelihood="moving", box=None, array=None):
+    """Estimate the start of Table 2 from new noise.
+
+    Parameters
+    ----------
+    runs : int
+        Number of independent records.
+    rng : numpy.random.Generator
+        Source of the noise, see `simulate`.
+    samples : int, optional
+        Length of a record; that of the paper, ten, if None.
+    likelihood : {"moving", "static"}
+        What the estimator assumes, see `ml_start`. The target moves in any case.
+    box : pair of array_like, shape (6,), optional
+        Where to search; `start_box()` if None.
+    array : RadarArray, optional
+        Other sensors than those of the paper.
+
+    Returns
+    -------
+    Starts
+
+    Raises
+    ------
+    ValueError
+        If an argument is refused by `simulate` or `ml_start`.
+    """
+    s = _record(samples, array)
+    _, z = simulate(s, runs, rng=rng)
+    box = start_box() if box is None else box
+    start = ml_start(z, s.array, s.sigma_f, s.T, box, likelihood)
+    error = start.x - s.x0
+    position, velocity = (np.linalg.norm(error[:, i], axis=-1) for i in (np.s_[:3], np.s_[3:]))
+    return Starts(start, position, velocity)
+
+
+def start_misfit(x, *, samples=None, likelihood="moving", rounding=0.0):
+    """Return how far the shifts of a state are from those of the true start of Table 2.
+
+    Parameters
+    ----------
+    x : array_like, shape (6,)
+        State at the first sample in m and m/s.
+    samples : int, optional
+        Length of the record; that of the paper, ten, if None.
+    likelihood : {"moving", "static"}
+        Whether the states move on during the record.
+    rounding : float
+        By how much each component of both states may be off, in m and m/s: half a unit of the
+        last printed digit.
+
+    Returns
+    -------
+    float
+        Root of the summed squared differences over the variance of the noise: the states'
+        distance in standard deviations. With rounding it is the least one, to first order.
+
+    Raises
+    ------
+    ValueError
+        If `x` is not one finite state, or another argument is refused.
+
+    Notes
+    -----
+    Noise makes `x` more likely than the truth with the probability Phi(-distance / 2): the two
+    chi-squares differ by distance^2 - 2 distance n, where n is one standard normal number.
+    """
+    s = _record(samples)
+    x = _checks.finite("x", x, (6,))
+    if x.shape != (6,):
+        raise ValueError(f"x must be one state, got an array of shape {x.shape}")
+    _checks.one_of("likelihood", likelihood, ("moving", "static"))
+    difference, slopes = [], []
+    for t in s.time:
+        F = np.eye(6)
+        F[:3, 3:] = (t if likelihood == "moving" else 0.0) * np.eye(3)
+        difference.append(doppler_shift(F @ x, s.array) - doppler_shift(F @ s.x0, s.array))
+        H, H0 = (doppler_jacobian(F @ state, s.array) @ F for state in (x, s.x0))
+        slopes.append(np.hstack([H, -H0]))
+    difference, slopes = np.concatenate(difference), np.concatenate(slopes)
+    if rounding:
+        limit = _checks.positive_number("rounding", rounding)
+        moved = lsq_linear(slopes * limit, -difference, (-1, 1)).x
+        difference = difference + slopes @ (limit * moved)
+    return float(np.linalg.norm(difference) / s.sigma_f)
+
+
+def samples_needed(error=None, *, array=None):
+    """Return how long a record must be for its bound to fall to an error.
+
+    Parameters
+    ----------
+    error : float, optional
+        Root mean square position error in m; the error that Table 2 prints if None.
+    array : RadarArray, optional
+        Other sensors than those of the paper.
+
+    Returns
+    -------
+    int
+        Least number of samples of the moving target.
+
+    Raises
+    ------
+    ValueError
+        If an argument is refused, or a record as long as the example does not suffice.
+    """
+    error = quoted()["position_error_norm_m"] if error is None else error
+    error = _checks.positive_number("error", error)
+    longest = scenario().samples
+    low, high = 1, longest  # the bound falls with every sample: bisection
+    while low < high:
+        middle = (low + high) // 2
+        if _bound(_record(middle, array)) <= error:
+            high = middle
+        else:
+            low = middle + 1
+    if low == longest and _bound(_record(low, array)) > error:
+        raise ValueError(f"error must be within reach of {longest} samples, got {error}")
+    return low
+
+
+def _bound(s):
+    """Return the root mean square position error that the bound allows, in m."""
+    P = crlb(s.x0, s.array, s.sigma_f, s.samples, s.T, "moving")
+    return np.sqrt(np.trace(P[:3, :3]))
+
+
+def _record(samples=None, array=None):
+    """Return the simulation example, cut to the record of the start."""
+    s = scenario()
+    samples = round(quoted()["mle_integration_time_s"] / s.T) if samples is None else samples
+    array = s.array if array is None else _checks.instance("array", array, RadarArray)
+    return replace(s, samples=samples, array=array)

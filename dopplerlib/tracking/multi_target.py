@@ -1,0 +1,151 @@
+"""Many detections a scan, an unknown number of targets: predict, gate, assign, update, start."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _checks
+from ..estimation.extended_update import ekf_innovation, ekf_update
+from .association import gnn_assign
+from .management import CONFIRMED, DELETED
+
+
+@dataclass(frozen=True)
+class ManagedTrack:
+    """One track from its first detection to its end.
+
+    Attributes
+    ----------
+    scan : ndarray of int, shape (L,)
+        Numbers of the scans, without gaps.
+    x : ndarray, shape (L, n)
+        State estimates, after the updates.
+    P : ndarray, shape (L, n, n)
+        Their covariances.
+    detection : ndarray of int, shape (L,)
+        Which detection of the scan belongs to it; -1 where it was only predicted.
+    confirmed : ndarray of bool, shape (L,)
+        Whether it was confirmed by then.
+    """
+
+    scan: np.ndarray
+    x: np.ndarray
+    P: np.ndarray
+    detection: np.ndarray
+    confirmed: np.ndarray
+
+
+def track_scans(
+    scans, F, Q, h, H, R, start, manager, probability=0.999, assign=gnn_assign, wrap=(), new=None
+):
+    """Track all targets in a sequence of scans.
+
+    Parameters
+    ----------
+    scans : sequence of ndarray, shape (detections, m)
+        Measurements of each scan; their number may vary.
+    F, Q : array_like, shape (n, n)
+        Transition matrix and process noise between scans.
+    h, H : callable
+        Measurement function and its Jacobian, see `ekf_update`.
+    R : array_like, shape (m, m)
+        Covariance of the measurement noise.
+    start : callable
+        Takes measurements (..., m), returns states (..., n) and covariances (..., n, n).
+    manager : TrackManager
+        Rules of confirmation and deletion.
+    probability : float
+        Probability of the chi-square gate.
+    assign : callable
+        `gnn_assign` or `greedy_assign`: takes NIS of all pairs and the size of the gate.
+    wrap : sequence of int
+        Components of the measurement that are angles.
+    new : callable, optional
+        Takes measurements (detections, m), returns which of them may start a track or belong to a
+        tentative one; all if None.
+
+    Returns
+    -------
+    list of ManagedTrack
+        In the order in which they began. A deleted track ends with its last scan before deletion.
+
+    Raises
+    ------
+    ValueError
+        If a scan has another number of components, or an argument is refused by a part.
+
+    Notes
+    -----
+    The loop of a tracker as Blackman and Popoli (1999) draw it. Confirmed tracks choose first, then
+    tentative ones; what nobody takes starts a track of its own.
+
+    Examples
+    --------
+    One target that moves on by one, and a false alarm in the second scan:
+
+    >>> from dopplerlib import TrackManager
+    >>> scans = [np.array([[0.0]]), np.array([[9.0], [1.0]]), np.array([[2.0]])]
+    >>> tracks = track_scans(
+    ...     scans, [[1.0]], [[2.0]], lambda x: x, lambda x: np.eye(1), [[0.1]],
+    ...     start=lambda z: (z, np.ones((*z.shape, 1))), manager=TrackManager(2, 3, 3),
+    ... )
+    >>> [(track.scan.tolist(), bool(track.confirmed[-1])) for track in tracks]
+    [([0, 1, 2], True), ([1, 2], False)]
+    """
+    from scipy.special import chdtri  # here: it takes longer to load than all the rest
+
+    m = _checks.matrix("R", R, (None, None)).shape[0]
+    size = chdtri(m, 1 - _checks.probability("probability", probability))
+    F, Q = _checks.finite("F", F), _checks.finite("Q", Q)
+    done, alive = [], []
+    for number, scan in enumerate(scans):
+        z = _checks.finite(f"scans[{number}]", scan, (None, m))
+        may_start = np.ones(len(z), bool) if new is None or not len(z) else new(z)
+        assigned = np.full(len(alive), -1)
+        if alive:
+            x = np.stack([track["x"][-1] for track in alive]) @ F.T
+            P = F @ np.stack([track["P"][-1] for track in alive]) @ F.T + Q
+            nu, S = ekf_innovation(x[:, None], P[:, None], z, h, H, R, wrap)
+            cost = np.sum(nu * np.linalg.solve(S, nu[..., None])[..., 0], axis=-1)
+            cost = np.where(cost <= size, cost, np.inf)
+            first = np.array([track["confirmed"][-1] for track in alive])
+            assigned[first] = assign(cost[first], size)
+            free = may_start & ~np.isin(np.arange(len(z)), assigned)
+            assigned[~first] = assign(np.where(free, cost, np.inf)[~first], size)
+            seen = np.full((len(alive), m), np.nan)
+            seen[assigned >= 0] = z[assigned[assigned >= 0]]
+            x, P, _, _ = ekf_update(x, P, seen, h, H, R, wrap)
+            for i, track in enumerate(alive):
+                _extend(track, number, x[i], P[i], assigned[i], manager)
+        left = np.flatnonzero(may_start & ~np.isin(np.arange(len(z)), assigned))
+        begun = [_begin(number, *start(z[i]), i, manager) for i in left]
+        done += begun
+        alive = [track for track in alive if track["life"].status != DELETED] + begun
+    return [_frozen(track) for track in done]
+
+
+def _begin(number, x, P, detection, manager):
+    life = manager.start()
+    return {
+        "life": life,
+        "scan": [number],
+        "x": [x],
+        "P": [P],
+        "detection": [detection],
+        "confirmed": [life.status == CONFIRMED],
+    }
+
+
+def _extend(track, number, x, P, detection, manager):
+    track["life"] = life = manager.advance(track["life"], detection >= 0)
+    if life.status != DELETED:
+        track["scan"].append(number)
+        track["x"].append(x)
+        track["P"].append(P)
+        track["detection"].append(detection)
+        track["confirmed"].append(life.status == CONFIRMED)
+
+
+def _frozen(track):
+    names = ("scan", "x", "P", "detection", "confirmed")
+    return ManagedTrack(*(np.array(track[name]) for name in names))

@@ -1,0 +1,177 @@
+"""Polar measurements, the scheme of Fig 6, smoother and models, and two who cross."""
+
+import numpy as np
+import pytest
+
+from dopplerlib import gnn_assign, kf, nees, rts_smooth
+from dopplerlib.model.kinematics import ncv_transition
+from dopplerlib.model.polar_radar import polar_radar_h
+from dopplerlib.systems import macaveiu2013 as paper
+from dopplerlib.systems.macaveiu2013 import chain, crossing, maneuvers, polar, tracking
+from dopplerlib.tracking.association import greedy_assign
+
+PATHS = paper.paths()
+S = paper.settings()
+
+
+def test_a_start_from_one_scan_has_the_covariance_of_its_error():
+    """NEES of positions and range rates of 4000 starts. False-alarm probability 6e-7 each."""
+    truth = np.tile([4.0, 1.0, 8.0, 2.0], (1, 1))
+    z = polar.measure(truth, 4000, rng=np.random.default_rng(1))[:, 0]
+    x, P = polar.start(z)
+    off = x[:, ::2] - truth[0, ::2]
+    value = np.einsum("ri,rij,rj->r", off, np.linalg.inv(P[:, ::2, ::2]), off)
+    # One degree at 9 m bends the polar noise by a millimeter: nothing to see.
+    assert value.mean() == pytest.approx(2, abs=5 * np.sqrt(4 / 4000))
+    np.testing.assert_allclose(polar_radar_h(x), z, atol=1e-12)
+    across = np.stack([np.cos(z[:, 1]), -np.sin(z[:, 1])], axis=-1)
+    spread = np.einsum("ri,rij,rj->r", across, P[:, 1::2, 1::2], across)
+    np.testing.assert_allclose(spread, polar.SIDEWAYS**2)
+
+
+def test_the_polar_filter_is_consistent_on_a_target_that_wanders_as_it_assumes():
+    """Mean NEES of 300 runs at the end; bounds of probability 1e-6."""
+    rng = np.random.default_rng(2)
+    s = S.with_(samples=60)
+    runs = 300
+    F = ncv_transition(s.T)
+    x = np.tile([-4.0, 1.4, 15.0, 0.3], (runs, 1))
+    path = np.empty((runs, 60, 4))
+    for k in range(60):
+        path[:, k] = x
+        x = x @ F.T
+        x[:, 1::2] += s.w * rng.standard_normal((runs, 2))
+    seen = polar_radar_h(path)
+    z = seen + rng.standard_normal(seen.shape) * np.sqrt(np.diag(polar.noise()))
+    track = polar.ekf(z, s)
+    at_end = nees(track, path)[:, -1].mean()
+    assert 4 - 5 * np.sqrt(8 / runs) < at_end < 4 + 5 * np.sqrt(8 / runs)
+
+
+def test_the_range_rate_taken_for_the_velocity_stops_a_crossing_target():
+    z = polar.measure(PATHS[8].truth, 20, rng=np.random.default_rng(3))
+    middle = slice(230, 270)
+    naive, ekf = polar.naive(z), polar.ekf(z)
+    assert np.abs(naive.x[:, middle, 1]).max() < 0.5 * 5 * paper.KMH
+    assert np.sqrt(np.mean((ekf.x - PATHS[8].truth)[:, middle, 1] ** 2)) < 0.1
+
+
+def test_a_scan_that_is_missing_is_predicted():
+    z = polar.measure(PATHS[8].truth[:20], 2, rng=np.random.default_rng(4))
+    z[0, 10:] = np.nan
+    track = polar.ekf(z, S)
+    assert track.updated[1, 1:].all() and not track.updated[0, 10:].any()
+    np.testing.assert_allclose(track.x[0, 12], ncv_transition(S.T) @ track.x[0, 11])
+
+
+def test_the_clutter_rule_deletes_the_crossing_target_and_no_one_that_recedes():
+    """|x / r| < v_min / v: with v = 5 km/h and y = 20 m, |x| < 2.38 m, which takes 3.4 s."""
+    hidden = {figure: chain.hidden(path.truth) for figure, path in PATHS.items()}
+    ratio = polar.polar()["v_min"] / (5 * paper.KMH)
+    width = 2 * 20 * ratio / np.sqrt(1 - ratio**2)
+    assert hidden[8].sum() == pytest.approx(width / (5 * paper.KMH) / S.T, abs=1)
+    assert [hidden[figure].sum() for figure in (7, 9, 10)] == [0, 0, 0]
+    assert hidden[11].sum() > hidden[8].sum()
+
+
+def test_the_object_association_groups_what_fits_into_the_box():
+    z = np.array([[20.0, 0.0, 1.0], [22.0, 0.1, 1.2], [22.0, 0.1, 2.0], [40.0, 0.0, 1.0]])
+    means, member = chain.objects(z)
+    assert member.tolist() == [0, 0, 1, 2]
+    np.testing.assert_allclose(means[0], [21.0, 0.05, 1.1])
+    means, member = chain.objects(np.empty((0, 3)))
+    assert means.shape == (0, 3) and member.shape == (0,)
+
+
+def test_the_scheme_finds_the_target_that_recedes_and_few_others():
+    scans = chain.simulate(PATHS[7].truth[:150], rng=np.random.default_rng(5))
+    tracks = [track for track in chain.run(scans) if track.confirmed.any()]
+    offs = [
+        np.median(np.linalg.norm((track.x - PATHS[7].truth[track.scan])[:, ::2], axis=1))
+        for track in tracks
+    ]
+    assert min(offs) < 0.5
+    assert tracks[int(np.argmin(offs))].scan[-1] == 149
+    without = chain.run(scans, rule="never")
+    assert sum(track.confirmed.any() for track in without) > len(tracks) + 5
+    with pytest.raises(ValueError, match="rule must be one of"):
+        chain.run(scans, rule="sometimes")
+
+
+def test_scans_say_where_detections_come_from():
+    """Means of 200 scans: 2.7, 8.4 and 0.3 detections; each off by 5 deviations with 6e-7."""
+    scans = chain.simulate(PATHS[7].truth[:200], rng=np.random.default_rng(6))
+    count = np.array([np.bincount(scan.source, minlength=3) for scan in scans])
+    expected = np.array([2.7, 8.4, 0.3])
+    variance = np.array([3 * 0.9 * 0.1, 12 * 0.7 * 0.3, 0.3])
+    assert (np.abs(count.mean(axis=0) - expected) < 5 * np.sqrt(variance / 200)).all()
+
+
+def test_filter_and_smoother_of_the_comparison_are_the_library_s():
+    path = PATHS[10]
+    z = tracking.measure(path.truth, 2, rng=np.random.default_rng(7))
+    filtered, smoothed = maneuvers.cv(z)
+    np.testing.assert_allclose(filtered, tracking.filtered(z), atol=1e-10)
+    for run in range(2):
+        alone = kf(z[run, 1:], ncv_transition(S.T), S.E_x, np.eye(4), S.E_z, z[run, 0], S.E_z)
+        x, _ = rts_smooth(alone.x, alone.P, ncv_transition(S.T), S.E_x)
+        np.testing.assert_allclose(smoothed[run, 1:], x, atol=1e-9)
+
+
+def test_constant_acceleration_follows_the_turn_without_lag_and_pays_in_noise():
+    path = PATHS[10]
+    still = maneuvers.ca(path.truth[None], q=0.01, a_max=1.45)[0]
+    # The acceleration is known at the end, to what is left of the start.
+    np.testing.assert_allclose(still[-1], path.truth[-1], atol=0.002)
+    z = tracking.measure(PATHS[7].truth, 20, rng=np.random.default_rng(8))
+    settled = np.arange(S.samples) >= S.skip
+    noisy = maneuvers.rms(maneuvers.ca(z, 0.01, 1.45), PATHS[7].truth, settled, "velocity")
+    calm = maneuvers.rms(maneuvers.cv(z)[0], PATHS[7].truth, settled, "velocity")
+    assert noisy.mean() > 1.5 * calm.mean()
+
+
+def test_two_models_notice_the_hard_turn():
+    path, turning = paper.hard_turn()
+    z = tracking.measure(path.truth, 20, rng=np.random.default_rng(9))
+    _, agile = maneuvers.two_models(z, (0.01, 0.055))
+    late = turning & np.roll(turning, 13)  # half a second to notice
+    before = (S.time > 4) & (S.time < 8)
+    assert agile[:, late].mean() > 0.6 > 0.4 > agile[:, before].mean()
+
+
+def test_root_mean_square_of_a_run_is_that_of_its_samples():
+    x = np.zeros((1, 3, 4))
+    x[0, :, 0], x[0, :, 2] = [3, 0, 9], [4, 0, 9]
+    where = np.array([True, True, False])
+    assert maneuvers.rms(x, np.zeros((3, 4)), where, "position")[0] == pytest.approx(5 / 2**0.5)
+    assert maneuvers.rms(x, np.zeros((3, 4)), where, "velocity")[0] == 0
+
+
+@pytest.mark.parametrize(("rule", "assign"), [("Hungarian", gnn_assign), ("greedy", greedy_assign)])
+def test_choices_for_two_are_those_of_the_general_assignments(rule, assign):
+    cost = np.random.default_rng(10).uniform(0, 9, size=(200, 2, 2))
+    chosen = crossing._choice(cost, rule)
+    assert [list(assign(one, 100.0)) for one in cost] == chosen.tolist()
+
+
+def test_crossing_paths_meet_half_way_at_their_angle():
+    truth = crossing.paths(0.5)
+    half = truth[:, [249, 250]].mean(axis=1)
+    np.testing.assert_allclose(half[0, ::2], half[1, ::2], atol=1e-9)
+    v = truth[:, 0, 1::2]
+    assert np.arccos(v[0] @ v[1] / crossing.WALK**2) == pytest.approx(0.5)
+
+
+def test_far_apart_every_rule_follows_both():
+    truth = crossing.paths(0.0)
+    truth[1, :, 2] += 30
+    for rule in crossing.RULES:
+        out = crossing.follow(truth, rule, 20, rng=np.random.default_rng(11))
+        assert not out.swapped.any() and not out.lost.any()
+        np.testing.assert_allclose(
+            out.x[:, 0],
+            tracking.filtered(
+                tracking.measure(truth[0], 20, rng=np.random.default_rng(11).spawn(2)[0])
+            ),
+            atol=1e-9,
+        )

@@ -1,0 +1,101 @@
+"""The loop over scans, against a filter that is told which detection is whose."""
+
+import numpy as np
+import pytest
+
+from dopplerlib import TrackManager, kf
+from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.tracking.association import greedy_assign
+from dopplerlib.tracking.multi_target import track_scans
+
+T, K = 0.5, 20
+F, Q = ncv_transition(T, dim=1), wna_process_noise(T, 0.1, dim=1)
+H, R = np.array([[1.0, 0.0]]), np.array([[0.04]])
+MANAGER = TrackManager(hits=2, window=3, delete_after=3)
+
+
+def start(z):
+    x = np.stack([z[..., 0], np.zeros(z.shape[:-1])], axis=-1)
+    return x, np.broadcast_to(np.diag([0.04, 4.0]), (*z.shape[:-1], 2, 2))
+
+
+def run(scans, manager=MANAGER, **settings):
+    return track_scans(scans, F, Q, lambda x: x @ H.T, lambda x: H, R, start, manager, **settings)
+
+
+def positions(rng, begin, speed):
+    return begin + speed * T * np.arange(K) + 0.2 * rng.standard_normal(K)
+
+
+def test_a_single_target_is_filtered_as_by_the_kalman_filter():
+    z = positions(np.random.default_rng(31), 0.0, 1.0)
+    (track,) = run([[[one]] for one in z], probability=0.999999)
+    x0, P0 = start(z[:1])
+    alone = kf(z[1:, None], F, Q, H, R, x0, P0)
+    np.testing.assert_allclose(track.x[1:], alone.x, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(track.P[1:], alone.P, rtol=1e-10, atol=1e-12)
+    assert track.scan.tolist() == list(range(K)) and (track.detection == 0).all()
+    assert track.confirmed.tolist() == [False] + [True] * (K - 1)
+
+
+@pytest.mark.parametrize("assign", [None, greedy_assign])
+def test_two_targets_far_apart_are_each_followed_alone_in_any_order_of_detections(assign):
+    rng = np.random.default_rng(32)
+    z = np.stack([positions(rng, 0.0, 1.0), positions(rng, 100.0, -1.0)], axis=-1)
+    orders = [rng.permutation(2) for _ in range(K)]
+    settings = {} if assign is None else {"assign": assign}
+    tracks = run([z[k][order][:, None] for k, order in enumerate(orders)], **settings)
+    assert len(tracks) == 2
+    for track in tracks:
+        mine = int(track.x[0, 0] > 50)
+        (alone,) = run([[[one]] for one in z[:, mine]], probability=0.999)
+        np.testing.assert_allclose(track.x, alone.x, rtol=1e-12)
+        taken = [orders[k][track.detection[k]] for k in range(K)]
+        assert taken == [mine] * K
+
+
+def test_a_target_that_disappears_is_predicted_and_then_deleted():
+    z = positions(np.random.default_rng(33), 0.0, 1.0)
+    scans = [np.array([[one]]) for one in z[:10]] + [np.empty((0, 1))] * 10
+    (track,) = run(scans, probability=0.999999)
+    assert track.scan[-1] == 11  # coasts at 10 and 11; the third miss deletes it
+    assert track.detection[-2:].tolist() == [-1, -1]
+    np.testing.assert_allclose(track.x[-1], F @ F @ track.x[9])
+    assert (np.diff(track.P[9:, 0, 0]) > 0).all()
+
+
+def test_confirmed_tracks_choose_before_tentative_ones():
+    """A newcomer is nearer to the detection, and does not get it."""
+    manager = TrackManager(hits=2, window=4, delete_after=5)
+    scans = [[[0.0]], [[0.0]], [[1.5]], [[0.9]]]
+    old, *rest = run([np.array(scan) for scan in scans], manager, probability=0.99)
+    assert old.confirmed[2] and old.detection.tolist() == [0, 0, -1, 0]
+    assert all(track.detection[-1] == -1 for track in rest)
+
+
+def test_what_may_not_start_a_track_may_still_belong_to_a_confirmed_one():
+    z = positions(np.random.default_rng(34), 0.0, 0.0)
+    scans = [np.array([[one], [50.0]]) for one in z]
+    tracks = run(scans, new=lambda z: z[:, 0] < 20)
+    assert len(tracks) == 1 and tracks[0].x[-1, 0] < 20
+    far = run(scans, new=lambda z: np.arange(len(z)) < 0)
+    assert far == []
+
+
+def test_false_alarms_are_confirmed_as_often_as_the_binomial_says():
+    """A false alarm in every scan with probability p, always at the same place.
+
+    Two of three: the share of starts that are confirmed is 1 - (1 - p)^2 = 0.36. Of about 1000
+    starts, the share is off by five deviations with probability 6e-7.
+    """
+    p, manager = 0.2, TrackManager(hits=2, window=3, delete_after=1)
+    rng = np.random.default_rng(35)
+    scans = [np.zeros((int(hit), 1)) for hit in rng.random(6_000) < p]
+    tracks = run(scans, manager)
+    confirmed = np.array([track.confirmed.any() for track in tracks[:-1]])
+    assert abs(confirmed.mean() - 0.36) < 5 * np.sqrt(0.36 * 0.64 / len(confirmed))
+
+
+def test_a_scan_of_another_kind_is_refused():
+    with pytest.raises(ValueError, match=r"scans\[1\] must have shape"):
+        run([np.zeros((1, 1)), np.zeros((1, 2))])
