@@ -70,7 +70,7 @@ def consistency(time, panels, interval):
     matplotlib.figure.Figure
     """
     with styled(7.0, 3.1) as figure:
-        axes = figure.subplots(1, len(panels))
+        axes = figure.subplots(1, len(panels), squeeze=False)[0]
         for ax, (title, series), bounds in zip(axes, panels.items(), interval, strict=True):
             ax.axhspan(*bounds, color=BOUND, alpha=0.3, lw=0, label="consistent, 95 %")
             for (label, values), (color, ls) in zip(series.items(), VARIANTS, strict=False):
