@@ -40,6 +40,17 @@ class Records:
         """Return the records of the first `runs` runs."""
         return replace(self, z=self.z[:runs])
 
+    def until(self, end):
+        """Return the records up to the time `end` in s."""
+        scans = int(np.sum(self.time <= end + 1e-9))
+        return replace(
+            self,
+            time=self.time[:scans],
+            truth=self.truth[:scans],
+            ranges=self.ranges[:, :scans],
+            z=self.z[:, :, :scans],
+        )
+
     def with_offset(self, offset):
         """Return the records as they look to whoever believes in another offset, in s."""
         return replace(self, offset=offset)
