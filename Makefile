@@ -62,6 +62,10 @@ notebooks-check: $(VENV)/.ready  ## execute the chapters again and compare every
 kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
 	$(PY) -m dopplerlib.derive
 
+.PHONY: figure4
+figure4: $(VENV)/.ready  ## run the study of Fig 4 and score every reading of it
+	$(PY) tools/figure4.py
+
 .PHONY: bench
 bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement
 	$(BENCH)/bin/python benchmarks/ekf.py

@@ -7,7 +7,8 @@ from ._bins import limits, samples
 
 _CHUNK = 128  # transforms at a time: these stay in the processor's cache
 _PAD = 4  # points of the grid in a bin, for the search beside a constant
-_STEPS = 40
+_STEPS = 60
+_NEAREST = 1e-3  # bins from the constant: nearer than that a tone cannot be told from it
 
 
 def ml_frequency(x, fs, band=None):
@@ -139,65 +140,81 @@ def ml_frequency_dc(x, fs, band=None):
     60
     """
     x, fs = samples(x, fs, least=3)
-    n = x.shape[-1]
     low, high, circular = limits(band, fs)
+    n = x.shape[-1]
+    rows = x.reshape(-1, n)
+    u = np.empty(len(rows))
+    for a in range(0, len(rows), 2 * _CHUNK):
+        part = slice(a, a + 2 * _CHUNK)
+        u[part] = _beside_constant(rows[part], low * n / fs, high * n / fs, circular)
+    return (u * (fs / n)).reshape(x.shape[:-1])
+
+
+def _beside_constant(x, low, high, circular):
+    """Return the likeliest frequencies beside a constant, between `low` and `high`, in bins."""
+    n = x.shape[-1]
     y = x - x.mean(axis=-1, keepdims=True)
-    nfft = _PAD * n
-    first, last = np.ceil(low / fs * nfft), np.floor(high / fs * nfft)
-    grid = np.arange(first, last + 1) if last > first else nfft / fs * np.array([low, high])
-    if circular:
-        grid = grid[:nfft]
+    first, last = np.ceil(low * _PAD), np.floor(high * _PAD)
     if last > first:
-        Y = scipy.fft.fft(y, nfft)[..., grid.astype(int) % nfft]
+        grid = np.arange(first, last + 1)[: _PAD * n]
+        Y = scipy.fft.fft(y, _PAD * n)[:, grid.astype(int) % (_PAD * n)]
     else:
-        Y = y @ np.exp(-2j * np.pi * np.outer(np.arange(n), grid) / nfft)
-    u = grid / _PAD  # in bins
-    weight = n - _ones(u, n)[0] ** 2 / n
+        grid = _PAD * np.array([low, high])
+        Y = y @ np.exp(-2j * np.pi * np.outer(np.arange(n), grid) / (_PAD * n))
+    u = grid / _PAD
+    # 0 itself is no candidate: its neighbors stand for the range up to it.
     near = np.abs((u + n / 2) % n - n / 2) < 0.1
-    with np.errstate(invalid="ignore", divide="ignore"):
-        fit = np.where(near, 0.0, np.abs(Y) ** 2 / weight)
+    weight = n - _ones(np.where(near, 1.0, u), n)[0] ** 2 / n
+    fit = np.where(near, 0.0, (Y.real**2 + Y.imag**2) / weight)
     top = u[np.argmax(fit, axis=-1)]
-    # 0 itself is no candidate, so its neighbors stand for the range up to it and a little beyond.
     left, right = top - 1 / _PAD, top + 1 / _PAD
-    if not circular:
-        left, right = np.maximum(left, low * n / fs), np.minimum(right, high * n / fs)
-    f = _climb(y, top, left, right) * fs / n
-    return low + (f - low) % fs if circular else f
+    if circular:
+        return low + (_climb(y, top, left, right) - low) % n
+    return _climb(y, top, np.maximum(left, low), np.minimum(right, high))
 
 
-def _climb(y, u, low, high):
-    """Return where the likelihood beside a constant is highest between `low` and `high`, in bins.
+def _climb(y, start, left, right):
+    """Return where the likelihood beside a constant is highest between `left` and `right`, in bins.
 
-    Newton's method inside a bracket that shrinks, for all windows at once.
+    Newton's method inside a bracket that shrinks, for all windows that are not there yet.
     """
     n = y.shape[-1]
-    t = np.arange(n) - (n - 1) / 2
-    c = 2 * np.pi / n
+    t = -2j * np.pi / n * (np.arange(n) - (n - 1) / 2)
+    powers = np.stack([np.ones(n), t, t**2], axis=-1)
+    found, busy = start.copy(), np.arange(len(start))
+    u, low, high = start, left, right
     for _ in range(_STEPS):
-        u = np.where(np.abs(u) < 1e-3, np.where(u < 0, -1e-3, 1e-3), u)
-        turned = y * np.exp(-1j * c * t * u[..., None])
-        Y0, Y1, Y2 = turned.sum(-1), turned @ (-1j * c * t), turned @ (-(c**2) * t**2)
+        u = np.where(np.abs(u) < _NEAREST, np.where(u < 0, -_NEAREST, _NEAREST), u)
+        Y0, Y1, Y2 = np.moveaxis((y * np.exp(t * u[:, None])) @ powers, -1, 0)
         P0, P1 = np.abs(Y0) ** 2, 2 * (Y0.conj() * Y1).real
         P2 = 2 * (np.abs(Y1) ** 2 + (Y0.conj() * Y2).real)
         D0, D1, D2 = _ones(u, n)
         W0, W1, W2 = n - D0**2 / n, -2 * D0 * D1 / n, -2 * (D1**2 + D0 * D2) / n
-        slope = (P1 * W0 - P0 * W1) / W0**2
-        bend = (P2 * W0 - P0 * W2) / W0**2 - 2 * W1 / W0 * slope
+        slope = P1 * W0 - P0 * W1
+        bend = P2 * W0 - P0 * W2 - 2 * W1 / W0 * slope
         low, high = np.where(slope > 0, u, low), np.where(slope > 0, high, u)
         with np.errstate(invalid="ignore", divide="ignore"):
             step = -slope / bend
         newton = (bend < 0) & (u + step >= low) & (u + step <= high)
         step = np.where(newton, step, (low + high) / 2 - u)
         u = u + step
-        if np.all((np.abs(step) < 1e-7) | (high - low < 1e-7)):
+        found[busy] = u
+        left = (~newton | (np.abs(step) > 1e-5)) & (high - low > 1e-9)
+        if not left.any():
             break
-    return u
+        y, u, low, high, busy = y[left], u[left], low[left], high[left], busy[left]
+    return found
 
 
 def _ones(u, n):
-    """Return the Fourier sum of n ones about their middle, and its derivatives, at u bins."""
-    c = 2 * np.pi / n
-    t = np.arange(n) - (n - 1) / 2
-    angle = c * t * np.asarray(u)[..., None]
-    cos, sin = np.cos(angle), np.sin(angle)
-    return cos.sum(-1), sin @ (-c * t), cos @ (-(c**2) * t**2)
+    """Return the Fourier sum of n ones about their middle, and its derivatives, at u bins.
+
+    Its sign is that of the multiple of n nearest to u: only products of two are of use.
+    """
+    a = np.pi * ((u + n / 2) % n - n / 2)
+    b = a / n
+    s, c = np.sin(b), np.cos(b)
+    D0 = np.sin(a) / s
+    D1 = np.pi * (np.cos(a) - D0 * c / n) / s
+    D2 = np.pi**2 * ((1 + c**2) * D0 / n**2 - 2 * np.cos(a) * c / n - D0 * s**2) / s**2
+    return D0, D1, D2

@@ -9,7 +9,7 @@ from .frequency import ml_frequency, peaks
 from .laws import crlb_frequency_std
 
 _TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}
-_AT_ONCE = 2**22  # samples in the windows that an estimator gets in one call
+_AT_ONCE = 2**16  # samples in the windows that an estimator gets in one call: a megabyte
 
 
 @dataclass(frozen=True)

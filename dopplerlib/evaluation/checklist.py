@@ -1,0 +1,193 @@
+"""What to test before believing a Doppler filter: eight checks that need nobody's word."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from .. import _checks
+from ..estimation.linear_kalman import kf_predict, kf_update
+from ..kernels.doppler import doppler_shift as shift_kernel
+from ..model.doppler import doppler_jacobian, doppler_shift
+from ..model.motion import constant_velocity
+from ..model.radar_array import RadarArray
+from .consistency import nees
+
+_STEP = 1e-30  # of the complex step: it cancels no digits, so it may be as small as one likes
+_SMALL = 1e-6  # shrinks noise and start until the filter is linear to as many digits
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check of a filter and its outcome.
+
+    Attributes
+    ----------
+    name : str
+        What is checked.
+    kind : {"exact", "statistical"}
+        Whether `value` is a difference that should be at most `limit`, or a p-value that should
+        be at least that: the probability with which the check fails a filter that is right.
+    value : float
+        What came out.
+    limit : float
+        What was allowed.
+    """
+
+    name: str
+    kind: str
+    value: float
+    limit: float
+
+    @property
+    def passed(self):
+        """Whether the filter passes."""
+        good = self.value <= self.limit if self.kind == "exact" else self.value >= self.limit
+        return bool(good)
+
+
+def complex_step_jacobian(x, array):
+    """Return the derivative of the Doppler shifts by a complex step, without a formula for it.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 6)
+        States in m and m/s.
+    array : RadarArray
+        The N sensors.
+
+    Returns
+    -------
+    ndarray, shape (..., N, 6)
+        Exact to rounding.
+
+    Raises
+    ------
+    ValueError
+        If `x` has the wrong shape or is not finite.
+
+    Notes
+    -----
+    h(x + i e) = h(x) + i e h'(x) - ..., so the imaginary part over e is the derivative; no
+    difference of nearly equal numbers is taken (Squire and Trapp 1998).
+    """
+    x = _checks.finite("x", x, (6,))[..., None, None, :] + 1j * _STEP * np.eye(6)
+    return shift_kernel(
+        *np.moveaxis(x, -1, 0), *array.positions.T[:, :, None], array.doppler_per_speed
+    ).imag / _STEP  # fmt: skip
+
+
+def filter_checklist(tracker, jacobian, scenario, *, rng, runs=200, samples=100, deviation=0.01):
+    """Put a filter through eight checks, in a world that is as the filter believes it to be.
+
+    Parameters
+    ----------
+    tracker : callable
+        ``tracker(z, array, x0, P0, T, sigma_p, sigma_f)`` gives a `Track`, like `dopplerlib.ekf`;
+        `z` has the shape (runs, K, N), and `x0` (runs, 6) belongs to one interval before.
+    jacobian : callable
+        ``jacobian(x, array)`` gives the derivative that the filter uses, shape (N, 6).
+    scenario : Scenario
+        Array, place, interval and noise.
+    rng : numpy.random.Generator
+        Source of randomness.
+    runs : int
+        Number of records for the statistical checks.
+    samples : int
+        Their length.
+    deviation : float
+        Standard deviation of the start in m and m/s: small, so that the filter is nearly linear.
+
+    Returns
+    -------
+    tuple of Check
+        The exact ones first. Each statistical one fails a filter that is right with a
+        probability of 0.001.
+    """
+    s = scenario
+    F, Q = constant_velocity(s.T, s.sigma_p)
+    P0 = deviation**2 * np.eye(6)
+    settings = P0, s.T, s.sigma_p, s.sigma_f
+    path, z, start = _world(s, F, P0, runs, samples, rng)
+    track = tracker(z, s.array, start, *settings)
+    calm = np.array([s.x0 + k * s.T * np.r_[s.x0[3:], 0, 0, 0] for k in range(samples)])
+    before = s.x0 - s.T * np.r_[s.x0[3:], 0, 0, 0]
+
+    true_H = complex_step_jacobian(calm, s.array)
+    H = np.stack([jacobian(x, s.array) for x in calm])
+    quiet = tracker(doppler_shift(calm, s.array)[None], s.array, before[None], *settings)
+    asymmetry = np.abs(track.P - track.P.mT).max() / np.abs(track.P).max()
+    spread = np.linalg.eigvalsh((track.P + track.P.mT) / 2)[..., 0].min()
+    last = nees(track, path)[:, -1]
+    dof = track.innovation.size
+    return (
+        Check("Jacobian equals a complex step", "exact", _relative(H, true_H), 1e-12),
+        Check("linear limit equals the Kalman filter", "exact",
+              _linear_limit(tracker, s, calm, before, P0, F, Q, rng), 1e-3),
+        Check("P symmetric and positive", "exact", asymmetry if spread > 0 else np.inf, 1e-10),
+        Check("axes renamed, same track", "exact", _renamed(tracker, s, z, start, track, settings),
+              1e-6),
+        Check("stays on the truth without noise", "exact", np.abs(quiet.x - calm).max(), 1e-9),
+        Check("NIS average", "statistical", _two_sided(track.nis.sum(), dof), 1e-3),
+        Check("innovations white", "statistical", _memory(track), 1e-3),
+        Check("NEES average", "statistical", _two_sided(last.sum(), 6 * runs), 1e-3),
+    )  # fmt: skip
+
+
+def _world(s, F, P0, runs, samples, rng):
+    """Return paths with process noise, measurements, and starts that err as `P0` says."""
+    x = np.broadcast_to(s.x0 - s.T * np.r_[s.x0[3:], 0, 0, 0], (runs, 6))
+    start = x + rng.multivariate_normal(np.zeros(6), P0, runs)
+    path = np.empty((runs, samples, 6))
+    push = np.r_[np.full(3, s.T**2 / 2), np.full(3, s.T)]  # the one acceleration of Eq 17
+    for k in range(samples):
+        x = x @ F.T + s.sigma_p * rng.standard_normal((runs, 1)) * push
+        path[:, k] = x
+    z = doppler_shift(path, s.array)
+    return path, z + s.sigma_f * rng.standard_normal(z.shape), start
+
+
+def _linear_limit(tracker, s, path, before, P0, F, Q, rng):
+    """Return how far the filter is from a Kalman filter when all errors are tiny."""
+    e = _SMALL
+    offset = rng.multivariate_normal(np.zeros(6), P0)
+    noise = s.sigma_f * rng.standard_normal((len(path), len(s.array)))
+    z = doppler_shift(path, s.array) + e * noise
+    track = tracker(
+        z[None], s.array, (before + e * offset)[None], e**2 * P0, s.T, e * s.sigma_p, e * s.sigma_f
+    )
+    x, P, R, error = offset, P0, s.sigma_f**2 * np.eye(len(s.array)), []
+    for k, H in enumerate(doppler_jacobian(path, s.array)):
+        x, P, _, _ = kf_update(*kf_predict(x, P, F, Q), noise[k], H, R)
+        error.append(x)
+    return _relative((track.x[0] - path) / e, np.array(error))
+
+
+def _renamed(tracker, s, z, start, track, settings):
+    """Return how far the track moves if x, y, z are called y, z, x."""
+    array = RadarArray(np.roll(s.array.positions, 1, axis=-1), s.array.wavelength)
+
+    def renamed(x):
+        return np.roll(x.reshape(*x.shape[:-1], 2, 3), 1, axis=-1).reshape(x.shape)
+
+    other = tracker(z, array, renamed(start), *settings)
+    return float(np.abs(other.x - renamed(track.x)).max())
+
+
+def _memory(track, lags=5):
+    """Return the p-value of the correlation of innovations with those of the samples before.
+
+    The innovations of a right filter have the variance S, so unlike in `innovation_whiteness`
+    nothing is estimated: with many runs the error of that would show.
+    """
+    white = np.linalg.solve(np.linalg.cholesky(track.S), track.innovation[..., None])
+    products = [white[:, lag:] * white[:, :-lag] for lag in range(1, lags + 1)]
+    return float(chi2.sf(sum(one.sum() ** 2 / one.size for one in products), lags))
+
+
+def _relative(value, expected):
+    return float(np.abs(value - expected).max() / np.abs(expected).max())
+
+
+def _two_sided(total, dof):
+    return float(2 * min(chi2.cdf(total, dof), chi2.sf(total, dof)))

@@ -1,0 +1,116 @@
+"""A post-mortem in pictures: symptoms, what each repair buys, and when an alarm is raised."""
+
+import numpy as np
+
+from .style import BOUND, OURS, PUBLISHED, TRUTH, VARIANTS, styled
+
+
+def symptoms(result, told, run=0):
+    """Draw distance, speed and position error of many runs beside what the report tells of its own.
+
+    Parameters
+    ----------
+    result : PostMortem
+        Runs of the report's system.
+    told : dict
+        Results of the report, see `reported`.
+    run : int
+        Which run to draw on its own.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    x = result.track.x
+    panels = (
+        ("distance x (m)", x[..., 0], result.truth[:, 0], told["final_x"]),
+        (
+            "speed (m/s)",
+            np.linalg.norm(x[..., 3:], axis=-1),
+            np.linalg.norm(result.truth[:, 3:], axis=-1),
+            np.linalg.norm(told["final_velocity"]),
+        ),
+        ("position error (m)", result.position_error, None, told["final_position_error"]),
+    )
+    with styled(7.0, 2.9) as figure:
+        axes = figure.subplots(1, 3)
+        for ax, (label, values, truth, final) in zip(axes, panels, strict=True):
+            low, high = np.percentile(values, [2.5, 97.5], axis=0)
+            ax.fill_between(
+                result.time, low, high, color=OURS, alpha=0.25, lw=0, label="95 % of our runs"
+            )
+            ax.plot(result.time, values[run], color=OURS, lw=1, label="one run")
+            if truth is not None:
+                ax.plot(result.time, truth, color=TRUTH, ls="--", label="truth")
+            ax.plot(
+                result.time[-1], final, "o", color=PUBLISHED, ms=6, mec="white", zorder=3,
+                clip_on=False, label="report, at the end",
+            )  # fmt: skip
+            ax.set(xlabel="time (s)", ylabel=label)
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+        return figure
+
+
+def repair_ranges(rows, reported):
+    """Draw what each repair makes of four quantities: median and central 95 % of the runs.
+
+    Parameters
+    ----------
+    rows : dict of str to dict of str to ndarray, shape (runs,)
+        For each variant, by its name, the same quantities by theirs.
+    reported : dict of str to float
+        What the report has, or what a right filter would have, by the name of the quantity: a pair
+        of label and number.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    names = list(next(iter(rows.values())))
+    place = -np.arange(len(rows))
+    with styled(7.0, 0.3 * len(rows) + 1.2) as figure:
+        axes = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
+        for ax, name in zip(axes, names, strict=True):
+            for y, quantities in zip(place, rows.values(), strict=True):
+                low, middle, high = np.percentile(quantities[name], [2.5, 50, 97.5])
+                ax.plot([low, high], [y, y], color=OURS, lw=2, alpha=0.45, solid_capstyle="butt")
+                ax.plot(middle, y, "o", color=OURS, ms=5)
+            label, value = reported[name]
+            color = PUBLISHED if label == "report" else BOUND
+            ax.axvline(value, color=color, ls=":" if label == "report" else "--", lw=1.3)
+            ax.text(
+                value, 0.7, f" {label}", color=color, fontsize=8.5, va="center",
+                ha="left",
+            )  # fmt: skip
+            ax.set(xscale="log", ylim=(place[-1] - 0.6, 1.1))
+            ax.set_xlabel(name, fontsize=9.5)
+            ax.grid(axis="y", visible=False)
+        axes[0].set_yticks(place, rows)
+        return figure
+
+
+def alarm_shares(looks, cases):
+    """Draw the share of runs in which each test has raised an alarm by a number of samples.
+
+    Parameters
+    ----------
+    looks : sequence of int
+        Numbers of samples after which the tests were taken.
+    cases : dict of str to dict of str to ndarray of bool, shape (runs, looks)
+        For each filter, by its name, what `innovation_alarms` returned.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 2.9) as figure:
+        axes = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
+        for ax, (title, alarms) in zip(axes, cases.items(), strict=True):
+            for (name, hits), (color, ls) in zip(alarms.items(), VARIANTS, strict=False):
+                share = np.logical_or.accumulate(hits, axis=-1).mean(axis=0)
+                ax.step(looks, share, where="post", color=color, ls=ls, label=name)
+            ax.set(xscale="log", xlabel="samples", ylim=(-0.03, 1.03))
+            ax.set_title(title, fontsize=9.5)
+        axes[0].set_ylabel("share of runs with an alarm")
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+        return figure

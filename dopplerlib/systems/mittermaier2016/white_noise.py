@@ -1,0 +1,87 @@
+"""What Eq 8 assumes, noise without memory, put to a Kalman filter whose noise has one."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.linear_kalman import kf
+
+
+@dataclass(frozen=True)
+class WalkFilter:
+    """A scalar Kalman filter over a random walk, judged after it has settled.
+
+    Attributes
+    ----------
+    nis : float
+        Mean of the normalized innovation squared; 1 if the filter is consistent.
+    nees : float
+        Mean of the normalized estimation error squared; 1 if the filter is consistent.
+    autocorrelation : ndarray, shape (lags + 1,)
+        Of the innovations, from lag 0 on; 0 beyond lag 0 if the filter is optimal.
+    """
+
+    nis: float
+    nees: float
+    autocorrelation: np.ndarray
+
+
+def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
+    """Track a random walk through given measurement noise, which the filter believes white.
+
+    Parameters
+    ----------
+    noise : array_like, shape (runs, K)
+        Errors of the measurements.
+    q : float
+        Variance of a step of the walk over that of `noise`. The filter knows it.
+    r : float
+        Variance of the noise that the filter assumes, over the true one.
+    rng : numpy.random.Generator
+        Source of the walk.
+    lags : int
+        Number of lags of the autocorrelation.
+    settle : int
+        Number of samples that are left out at the start, less than K - lags.
+
+    Returns
+    -------
+    WalkFilter
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite or not positive, or the record is too short.
+
+    Notes
+    -----
+    Mittermaier et al. (2016), Eq 8.
+    """
+    noise = _checks.finite("noise", noise, (None, None))
+    q, r = _checks.positive_number("q", q), _checks.positive_number("r", r)
+    _checks.generator("rng", rng)
+    lags = _checks.whole_number("lags", lags)
+    settle = _checks.whole_number("settle", settle, least=0)
+    if noise.shape[-1] <= settle + lags:
+        raise ValueError(
+            f"noise must have more than settle + lags = {settle + lags} samples, "
+            f"got {noise.shape[-1]}"
+        )
+    R = np.mean(noise**2)
+    walk = np.cumsum(np.sqrt(q * R) * rng.standard_normal(noise.shape), axis=-1)
+    one = np.eye(1)
+    track = kf((walk + noise)[..., None], one, q * R * one, one, r * R * one, np.zeros(1), R * one)
+    k = slice(settle, None)
+    innovation = track.innovation[..., k, 0]
+    power = np.mean(innovation**2)
+    products = [
+        np.mean(innovation[..., lag:] * innovation[..., : innovation.shape[-1] - lag])
+        for lag in range(lags + 1)
+    ]
+    error = track.x[..., k, 0] - walk[..., k]
+    return WalkFilter(
+        nis=float(np.mean(track.nis[..., k])),
+        nees=float(np.mean(error**2 / track.P[..., k, 0, 0])),
+        autocorrelation=np.array(products) / power,
+    )
