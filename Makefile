@@ -58,6 +58,10 @@ notebooks: $(VENV)/.ready  ## execute the chapters in place
 notebooks-check: $(VENV)/.ready  ## execute the chapters again and compare every byte
 	$(PY) tools/notebooks.py --check
 
+.PHONY: record
+record: $(VENV)/.ready  ## execute the chapters again and write the page on reproducibility
+	$(PY) -m tools.record
+
 .PHONY: kernels
 kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
 	$(PY) -m dopplerlib.derive
