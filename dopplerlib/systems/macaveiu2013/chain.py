@@ -193,3 +193,23 @@ def hidden(truth):
     ndarray of bool, shape (K,)
     """
     return ~moves(polar_radar_h(truth))
+
+
+def longest_gap(seen):
+    """Return the largest number of scans in a row without a detection.
+
+    Parameters
+    ----------
+    seen : ndarray of bool, shape (runs, K)
+        Whether the target is detected in a scan.
+
+    Returns
+    -------
+    ndarray of int, shape (runs,)
+    """
+    longest = np.zeros(len(seen), int)
+    current = np.zeros(len(seen), int)
+    for column in seen.T:
+        current = np.where(column, 0, current + 1)
+        longest = np.maximum(longest, current)
+    return longest
