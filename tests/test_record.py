@@ -6,7 +6,7 @@ import re
 import pytest
 import yaml
 
-from tools import record
+from tools import record, seeds
 from tools.notebooks import ROOT, chapters
 
 PAGE = record.PAGE.read_text(encoding="utf8")
@@ -18,8 +18,12 @@ def test_the_hashes_on_the_page_are_those_of_the_stored_results_and_data():
         assert table in PAGE
 
 
-def test_every_chapter_has_a_run_time():
-    assert sorted(record.recorded_seconds()) == sorted(path.name for path in chapters())
+def test_every_chapter_has_a_run_time_and_every_document_its_verdicts():
+    measured = record.recorded(PAGE)
+    named = re.findall(r"^\| `(.+?)` \| \d+ \|$", measured[record.TIMES], flags=re.MULTILINE)
+    assert named == [path.name for path in chapters()]
+    judged = re.findall(r"^\| (\w+) \| 1 \|", measured[record.SEEDS], flags=re.MULTILINE)
+    assert judged == seeds.documents()
 
 
 def test_a_changed_result_changes_its_hash_and_a_changed_text_does_not(tmp_path):
@@ -43,11 +47,22 @@ def test_seeds_are_found_in_code_only(tmp_path):
     assert record.seeds(path) == [3, 12]
 
 
-def test_nothing_is_written_if_a_chapter_comes_out_differently(monkeypatch, tmp_path):
+@pytest.mark.parametrize("failed", ["run_times", "seeds_tried"])
+def test_nothing_is_written_if_a_result_differs(monkeypatch, tmp_path, failed):
     monkeypatch.setattr(record, "PAGE", tmp_path / "page.md")
-    monkeypatch.setattr(record, "measured_seconds", lambda: ({}, 1))
+    for name in ("run_times", "seeds_tried"):
+        monkeypatch.setattr(record, name, lambda name=name: None if name == failed else "fine")
     assert record.main([]) == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_fresh_hashes_keep_what_was_measured(monkeypatch, tmp_path):
+    path = tmp_path / "page.md"
+    measured = {record.RAN: "here", record.SEEDS: "none", record.TIMES: "long ago"}
+    path.write_text(record.page(measured).replace("`codecheck.yml`", "it"), encoding="utf8")
+    monkeypatch.setattr(record, "PAGE", path)
+    assert record.main(["--hashes"]) == 0
+    assert path.read_text(encoding="utf8") == record.page(measured)
 
 
 def test_the_versions_are_those_of_the_lock():

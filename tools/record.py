@@ -1,8 +1,9 @@
 """Execute every chapter again and write down what it took: the page on reproducibility.
 
-Hashes, versions, seeds and run times go to book/reproducibility.md, which nobody edits by hand.
-Nothing is written unless every chapter comes out as it is stored. Without executing anything,
---hashes brings the hashes up to date, for whoever has just changed one chapter.
+Hashes, versions, seeds, run times and the verdicts under other seeds go to book/reproducibility.md,
+which nobody edits by hand. Nothing is written unless every chapter comes out as it is stored and
+every verdict is the one on record. Without running anything, --hashes brings the hashes up to date,
+for whoever has just changed one chapter.
 """
 
 import argparse
@@ -16,10 +17,14 @@ import time
 from importlib.metadata import version
 from pathlib import Path
 
+from dopplerlib.evaluation.claims import VERDICTS
+from tools import seeds as judged
 from tools.notebooks import ROOT, chapters, differences, execute
 
 PAGE = ROOT / "book" / "reproducibility.md"
 SEED = re.compile(r"default_rng\(([\d_]+)\)")
+RAN, SEEDS, TIMES = "Where it ran", "What changes with the seed", "Run times"
+OTHER_SEEDS = (1, 2, 3)
 SHOWN = 16  # hexadecimal digits of a hash: 64 bits, plenty to tell files apart
 
 
@@ -89,13 +94,61 @@ def hash_tables():
     )
 
 
-def page(seconds):
-    """Return the page as text; `seconds` is the run time of each chapter by its name."""
+def where_it_ran():
+    """Return the section on Python, the processor and the packages."""
+    return f"""CPython {platform.python_version()} on {platform.system()} ({platform.machine()}),
+{processor()}, {os.cpu_count()} cores. Every chapter ran alone and on one thread for linear algebra.
+
+{table(("package", "version"), packages().items())}
+
+These are the packages that the project asks for; `environment.lock` holds all that they ask for in
+turn, with the hash of every file."""
+
+
+def run_times():
+    """Execute the chapters; return the section on their run times, or None if one differs."""
+    rows, bad = [], 0
+    for path in chapters():
+        print(f"{path.name} ...", end=" ", file=sys.stderr, flush=True)
+        start = time.perf_counter()
+        found = differences(path.read_text(encoding="utf8"), execute(path, timeout=300))
+        seconds = time.perf_counter() - start
+        print(f"{seconds:.1f} s", *found, sep="\n  ", file=sys.stderr)
+        rows.append((f"`{path.name}`", f"{seconds:.0f}"))
+        bad += bool(found)
+    text = f"""Of the whole chapter, with the kernels compiled before. They say what to expect, no
+more: on other machines, and on a busy one, they differ.
+
+{table(("chapter", "run time in s"), rows)}"""
+    return None if bad else text
+
+
+def seeds_tried():
+    """Judge all claims with other seeds; return the section, or None if a verdict differs."""
+    found = {}
+    for document in judged.documents():
+        found[document] = {}
+        for seed in OTHER_SEEDS:
+            print(f"claims of {document}, seed {seed} ...", file=sys.stderr, flush=True)
+            found[document][seed] = judged.verdicts(document, seed)
+    different = judged.differences(found, {name: judged.on_record(name) for name in found})
+    print(*different, sep="\n", file=sys.stderr)
+    rows = [
+        (name, seed, *(list(by_claim.values()).count(verdict) for verdict in VERDICTS))
+        for name, by_seed in found.items()
+        for seed, by_claim in by_seed.items()
+    ]
+    text = f"""The numbers of random results do, the verdicts do not. `make seeds` draws all noise
+behind every claim again, with other seeds than the pages and the tests use, and fails if one
+verdict is not that on record.
+
+{table(("document", "seed", *VERDICTS), rows)}"""
+    return None if different else text
+
+
+def page(measured):
+    """Return the page as text; `measured` holds the sections that take a run, by title."""
     chapter_table, data_table = hash_tables()
-    time_table = table(
-        ("chapter", "run time in s"), [(f"`{n}`", f"{s:.0f}") for n, s in sorted(seconds.items())]
-    )
-    versions = table(("package", "version"), packages().items())
     return f"""(sec-reproducibility)=
 # Can you repeat it?
 
@@ -106,15 +159,9 @@ what is stored, and `make notebooks-check` compares every byte, the figures incl
 the exact versions of `environment.lock` first. This page tells what the stored results are, and
 where they were last made.
 
-## Where it ran
+## {RAN}
 
-CPython {platform.python_version()} on {platform.system()} ({platform.machine()}),
-{processor()}, {os.cpu_count()} cores. Every chapter ran alone and on one thread for linear algebra.
-
-{versions}
-
-These are the packages that the project asks for; `environment.lock` holds all that they ask for in
-turn, with the hash of every file.
+{measured[RAN]}
 
 ## Results
 
@@ -123,12 +170,13 @@ figures. Seeds are those that its cells hand to `numpy.random.default_rng`.
 
 {chapter_table}
 
-## Run times
+## {SEEDS}
 
-Of the whole chapter, with the kernels compiled before. They say what to expect, no more: on other
-machines, and on a busy one, they differ.
+{measured[SEEDS]}
 
-{time_table}
+## {TIMES}
+
+{measured[TIMES]}
 
 ## Data
 
@@ -142,36 +190,29 @@ reproduces it, for whoever wants to check the replication formally.
 """
 
 
-def recorded_seconds():
-    """Return the run times that the page tells, by chapter."""
-    text = PAGE.read_text(encoding="utf8").split("## Run times")[1].split("## ")[0]
-    return {name: int(time) for name, time in re.findall(r"^\| `(.+?)` \| (\d+) \|$", text, re.M)}
-
-
-def measured_seconds():
-    """Execute the chapters; return their run times, and how many came out differently."""
-    seconds, bad = {}, 0
-    for path in chapters():
-        print(f"{path.name} ...", end=" ", file=sys.stderr, flush=True)
-        start = time.perf_counter()
-        found = differences(path.read_text(encoding="utf8"), execute(path, timeout=300))
-        seconds[path.name] = time.perf_counter() - start
-        print(f"{seconds[path.name]:.1f} s", *found, sep="\n  ", file=sys.stderr)
-        bad += bool(found)
-    return seconds, bad
+def recorded(text):
+    """Return the sections of a page that take a run, by title."""
+    return {
+        title: text.split(f"\n## {title}\n")[1].split("\n## ")[0].strip()
+        for title in (RAN, SEEDS, TIMES)
+    }
 
 
 def main(argv=None):
-    """Write the page; return the number of chapters that kept it from being written."""
+    """Write the page; return 1 if a result kept it from being written."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--hashes", action="store_true", help="execute nothing, keep the run times")
-    seconds, bad = (recorded_seconds(), 0) if parser.parse_args(argv).hashes else measured_seconds()
-    if not bad:
-        temporary = PAGE.with_suffix(".tmp")
-        temporary.write_text(page(seconds), encoding="utf8", newline="\n")
-        temporary.replace(PAGE)
-    return bad
+    parser.add_argument("--hashes", action="store_true", help="run nothing, keep what was measured")
+    if parser.parse_args(argv).hashes:
+        measured = recorded(PAGE.read_text(encoding="utf8"))
+    else:
+        measured = {RAN: where_it_ran(), TIMES: run_times(), SEEDS: seeds_tried()}
+    if None in measured.values():
+        return 1
+    temporary = PAGE.with_suffix(".tmp")
+    temporary.write_text(page(measured), encoding="utf8", newline="\n")
+    temporary.replace(PAGE)
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(bool(main()))
+    sys.exit(main())
