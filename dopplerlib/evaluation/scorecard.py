@@ -45,7 +45,7 @@ def _row(judgment):
     if claim.note:
         told.append(claim.note)
     told.append(
-        f'<a href="{claim.page}.html#cell-{claim.cell}">{claim.page.split("_")[0]}</a> · '
+        f'<a href="{claim.page}.html#cell-{claim.cell}">{claim.page.replace("_", " ")}</a> · '
         f'<span class="test">{claim.test.split("::")[-1].replace("_", " ")}</span>'
     )
     relation = f"{claim.relation} " if claim.relation else ""

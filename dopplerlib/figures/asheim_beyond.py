@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.patches import Ellipse
 
-from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, styled
+from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, plain_log_ticks, styled
 
 
 def bound_map(x, y, deviation, sensors, points, covariances, scale, baselines, across):
@@ -144,5 +144,6 @@ def offsets(offset, errors):
             )
         ax.set(xlabel="radar 2 measures later by, in s", ylabel="RMS position error in m")
         ax.set(yscale="log")
+        plain_log_ticks(ax.yaxis)
         ax.legend(fontsize=9)
         return figure

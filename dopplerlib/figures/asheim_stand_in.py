@@ -146,6 +146,9 @@ def managed(time, detections, tracks, truth, gap, alternative):
         right.plot(time, alternative, color=OURS, marker=".", ms=4, label="PDA")
         left.set(title=f"{LABEL}: managed tracks", ylabel="range in m")
         right.set_title(f"{LABEL}: one track, PDA")
+        entries = {}
         for ax in (left, right):
-            ax.legend(loc="lower left", fontsize=8.5)
+            for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+                entries.setdefault(label, handle)
+        figure.legend(entries.values(), entries, loc="outside lower center", ncols=4, fontsize=8.5)
         return figure

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, styled
+from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, plain_log_ticks, styled
 
 KMH = 3.6  # km/h for each m/s
 
@@ -70,6 +70,7 @@ def hole(time, rates, v_min, deviations):
         for (label, error), (color, ls) in zip(deviations.items(), VARIANTS, strict=False):
             right.plot(time[1:], error[1:], color=color, ls=ls, label=label)
         right.set(xlabel="time in s", ylabel="position error in m, rms", yscale="log")
+        plain_log_ticks(right.yaxis)
         right.legend(loc="best")
         return figure
 
@@ -104,7 +105,7 @@ def over_time(time, errors, shaded, ylabel, mode=None):
         for (label, error), (color, ls) in zip(errors.items(), VARIANTS, strict=False):
             axes[0].plot(time, error, color=color, ls=ls, label=label)
         axes[0].set(ylabel=ylabel, yscale="log")
-        axes[0].legend(loc="upper left", ncols=2, fontsize=8.5)
+        axes[0].legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize=8.5)
         if mode is not None:
             axes[1].plot(time, mode, color=OURS)
             axes[1].set(ylabel="agile model", ylim=(0, 1))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, styled
+from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, plain_log_ticks, styled
 
 KMH = 3.6  # km/h for each m/s
 SETTINGS = {
@@ -151,5 +151,6 @@ def nis_and_nees(time, averages, intervals):
             for (label, pair), (color, ls) in zip(averages.items(), VARIANTS, strict=False):
                 ax.plot(time, pair[i], color=color, ls=ls, lw=1.1, label=label)
             ax.set(xlabel="time in s", ylabel=f"average {name}", yscale="log")
+            plain_log_ticks(ax.yaxis)
         axes[0].legend(loc="upper right")
         return figure

@@ -65,7 +65,7 @@ def pulses(distance, signal, v, doppler):
         styles = ((OURS, "-"), (PUBLISHED, "--"), (ORANGE, "-."))
         for (label, power), (color, ls) in zip(doppler.items(), styles, strict=False):
             right.plot(v, power, color=color, ls=ls, label=label)
-        right.set(xlabel="range rate in m/s", ylabel="dB", ylim=(-60, 22))
+        right.set(xlabel="range rate in m/s", ylabel="power in dB of the strongest", ylim=(-60, 22))
         right.legend(loc="upper center", ncols=2)
         return figure
 

@@ -200,6 +200,7 @@ def colored(lag, autocorrelation, belief):
         right.plot([], [], "o", color=TRUTH, mfc="white", mew=2, label="mean NIS")
         right.plot([], [], "D", color=TRUTH, label="mean NEES")
         right.set(yscale="log", xticks=range(len(belief)), xlim=(-0.6, len(belief) - 0.4))
+        right.set_ylabel("mean, 1 is consistent")
         right.set_xticklabels([label.replace(", ", ",\n") for label in belief], fontsize=8)
         right.legend(loc="upper left")
         values = [value for pair in belief.values() for value in pair]

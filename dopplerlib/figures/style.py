@@ -4,6 +4,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 STYLE = Path(__file__).with_name("style.mplstyle")
 
@@ -31,3 +32,17 @@ def styled(width=7.0, height=4.0):
         figure = plt.figure(figsize=(width, height))
         plt.close(figure)
         yield figure
+
+
+def plain_log_ticks(axis):
+    """Label 1, 2 and 5 times the powers of ten of a logarithmic axis with plain numbers.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+        Axis with a logarithmic scale that spans about a decade, where powers of ten alone are too
+        few.
+    """
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
