@@ -8,12 +8,21 @@ from .causes import Consistency, consistency_runs, matched_P0, range_claims, swi
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
-from .noise_sweep import ERROR_LIMITS, NOISE_LEVELS, Figure4, SweepReading, figure4
+from .noise_sweep import (
+    ERROR_LIMITS,
+    NOISE_LEVELS,
+    Figure4,
+    SweepReading,
+    figure4,
+    figure4_array,
+    grid_points,
+)
 from .published import (
     PublishedFigure3,
     PublishedFigure4,
     PublishedFigure6,
     Table2,
+    figure4_settings,
     published_figure3,
     published_figure4,
     published_figure6,
@@ -63,9 +72,12 @@ __all__ = [
     "figure3_readings",
     "figure3_score",
     "figure4",
+    "figure4_array",
     "figure4_readings",
     "figure4_score",
+    "figure4_settings",
     "figure6",
+    "grid_points",
     "linear_filter",
     "linear_world",
     "matched_P0",
