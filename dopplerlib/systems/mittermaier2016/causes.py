@@ -100,7 +100,8 @@ def switched_ekf(
             straight = shift[k] + _times(H, x - path[k])
             predicted = predicted + (1 - curvature) * straight
         PHt = P @ np.swapaxes(H, -1, -2)
-        S = H @ PHt + R
+        straight_S = H @ PHt
+        S = straight_S + R
         if second_order:
             mean, covariance = _missed(x, P, array)
             predicted, S = predicted + curvature * mean, S + curvature**2 * covariance
@@ -113,7 +114,7 @@ def switched_ekf(
         x = x + _times(gain, innovation)
         # I - K H would do if S were H P H' + R; this holds with more in S as well.
         A = np.eye(6) - gain @ H
-        extra = S - H @ PHt
+        extra = S - straight_S
         P = A @ P @ np.swapaxes(A, -1, -2) + gain @ extra @ np.swapaxes(gain, -1, -2)
         nis = np.sum(innovation * _times(weight, innovation), axis=-1)
         steps.append((x, P, innovation, S, nis))
