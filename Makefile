@@ -58,6 +58,10 @@ notebooks: $(VENV)/.ready  ## execute the chapters in place
 notebooks-check: $(VENV)/.ready  ## execute the chapters again and compare every byte
 	$(PY) tools/notebooks.py --check
 
+.PHONY: record
+record: $(VENV)/.ready  ## execute the chapters again and write the page on reproducibility
+	$(PY) -m tools.record
+
 .PHONY: kernels
 kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
 	$(PY) -m dopplerlib.derive
@@ -69,6 +73,10 @@ figure4: $(VENV)/.ready  ## run the study of Fig 4 in full: some twenty seconds
 .PHONY: figure4-readings
 figure4-readings: $(VENV)/.ready  ## score every reading of Fig 4: some minutes
 	$(PY) tools/figure4.py readings
+
+.PHONY: seeds
+seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depend on the draw
+	$(PY) tools/seeds.py
 
 .PHONY: bench
 bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement

@@ -7,6 +7,7 @@ Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
+from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
 from .noise_sweep import (
     ERROR_LIMITS,
@@ -54,6 +55,7 @@ __all__ = [
     "ErrorMap",
     "Figure4",
     "Figure6",
+    "Figure6Readings",
     "PublishedFigure3",
     "PublishedFigure4",
     "PublishedFigure6",
@@ -77,6 +79,7 @@ __all__ = [
     "figure4_score",
     "figure4_settings",
     "figure6",
+    "figure6_readings",
     "grid_points",
     "linear_filter",
     "linear_world",
@@ -86,6 +89,7 @@ __all__ = [
     "published_figure6",
     "quoted",
     "range_claims",
+    "ruled_out",
     "samples_needed",
     "saved_figure4",
     "scenario",
@@ -93,6 +97,7 @@ __all__ = [
     "signal_chain",
     "start_box",
     "start_misfit",
+    "still_counts",
     "switched_ekf",
     "table2",
     "table2_starts",
