@@ -5,12 +5,11 @@ Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
 from .causes import Consistency, consistency_runs, matched_P0, switched_ekf
+from .chain_errors import Judged, judged, position_bound
 from .end_to_end import (
     FAULTS,
     Baseband,
     EndToEnd,
-    Judged,
-    judged,
     received,
     track_iq,
 )
@@ -66,6 +65,7 @@ __all__ = [
     "linear_filter",
     "linear_world",
     "matched_P0",
+    "position_bound",
     "published_figure3",
     "published_figure6",
     "quoted",
