@@ -110,7 +110,7 @@ def wrong_time(time, nis, nees, labels):
             ax.set(xlabel="time in s", ylabel=f"mean {name}")
         left.set_ylim(0, 12)
         right.set_yscale("log")
-        right.text(time[0], 6.6, "consistent: 6", color=BOUND, va="bottom", fontsize=8.5)
+        left.text(time[-1], 6.2, "expected: 6", color=BOUND, ha="right", fontsize=8.5)
         handles, names = left.get_legend_handles_labels()
         figure.legend(handles, names, loc="outside upper center", ncols=len(names))
         return figure
@@ -162,40 +162,33 @@ def starts(lengths, errors, shares, limit):
         return figure
 
 
-def achievable(levels, groups, bounds, labels):
+def achievable(levels, medians, bound):
     """Draw position errors over the strength of the echo.
 
     Parameters
     ----------
     levels : sequence of float
         Power of the echo over the noise in 1 Hz, in dB.
-    groups : sequence of list of Estimate
-        Medians in m with their intervals, for each label and level.
-    bounds : sequence of ndarray
-        Medians in m that the bound would allow, for each label and level.
-    labels : sequence of str
-        What the groups are.
+    medians : sequence of Estimate
+        Median errors in m with their intervals, for each level.
+    bound : sequence of float
+        Medians in m that the bound would allow, for each level.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    styles = ((OURS, "o", "-"), (PINK, "s", "--"))
-    with styled(7.0, 3.2) as figure:
+    with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
-        for label, group, bound, (color, marker, ls) in zip(
-            labels, groups, bounds, styles, strict=False
-        ):
-            for x, m in zip(levels, group, strict=True):
-                ax.plot([x, x], [1e3 * m.low, 1e3 * m.high], color=color, lw=1.8)
-                ax.plot(x, 1e3 * m.value, marker, color=color, ms=5)
-            ax.plot(levels, 1e3 * np.asarray(bound), color=BOUND, ls=ls, lw=1.2)
-            ax.plot([], [], marker, color=color, label=label)
-            ax.plot([], [], color=BOUND, ls=ls, lw=1.2, label=f"{label}, bound")
-        ax.set(yscale="log", xlabel="echo over the noise in 1 Hz, dB")
+        ax.plot(levels, 1e3 * np.asarray(bound), color=BOUND, ls="--", lw=1.2, label="bound")
+        for x, m in zip(levels, medians, strict=True):
+            ax.plot([x, x], [1e3 * m.low, 1e3 * m.high], color=OURS, lw=1.8)
+        values = [1e3 * m.value for m in medians]
+        ax.plot(levels, values, "o", color=OURS, ms=5, label="from IQ samples")
+        ax.set(yscale="log", xlabel="echo over the noise in 1 Hz, dB", xticks=levels)
         ax.set(ylabel="median position error in mm")
         ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        ax.legend(ncols=2)
+        ax.legend()
         return figure
 
 

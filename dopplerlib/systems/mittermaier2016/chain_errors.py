@@ -63,7 +63,7 @@ def judged(found, moments=(0.5, 1.0), carry=True):
     return Judged(np.array(error), np.array(squared), nis)
 
 
-def position_bound(moment, window, cn0, *, first=0.0, samples_per_second=2000):
+def position_bound(moment, window, cn0, *, first=0.0, samples_per_second=100e3):
     """Return how well the position at a moment can be known from windows side by side.
 
     Parameters

@@ -200,6 +200,30 @@ def test_inflating_changes_the_belief_and_hardly_the_estimate(iq):
     assert np.median(a.nees[0]) == pytest.approx(2 * np.median(b.nees[0]), rel=0.2)
 
 
+def test_the_bound_falls_with_the_root_of_the_power_and_the_length_of_windows():
+    """Deviations go with 1 / sqrt(cn0); two windows of half the length are worse than one."""
+    one, ten = (paper.position_bound(0.5, 0.05, cn0) for cn0 in (1e6, 1e7))
+    assert_allclose(ten, one / 10, rtol=1e-9)
+    assert np.trace(paper.position_bound(0.5, 0.025, 1e6)) > np.trace(one)
+
+
+def test_the_paper_s_own_shifts_leave_a_meter_after_ten_milliseconds():
+    """0.4 Hz from a window of 1 ms; the bound of ten such samples is 0.96 m, by another program."""
+    cn0 = 6 / ((2 * np.pi) ** 2 * S.sigma_f**2 * S.T**3)
+    P = paper.position_bound(0.01, S.T, cn0)
+    assert np.sqrt(np.trace(P)) == pytest.approx(0.96, rel=0.02)
+
+
+def test_tracks_are_not_better_than_the_bound(found):
+    """A hundredth of the runs may be; mean squares of 60 runs with about 2 dominant directions.
+
+    The sum of squares over the bound is at least chi-square of 60 in one direction.
+    """
+    P = paper.position_bound(0.5, 0.025, 1e6, first=0.005)
+    ratio = np.mean(paper.judged(found).error[0] ** 2) / np.trace(P)
+    assert ratio > chi2.ppf(1e-6, RUNS) / RUNS
+
+
 def test_the_search_of_quarters_covers_the_room():
     lower, upper = paper.start_box()
     boxes = end_to_end._quarters(lower, upper)
