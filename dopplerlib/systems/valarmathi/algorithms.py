@@ -93,9 +93,7 @@ class AlgorithmRuns:
         Shape (runs, K').
         """
         scored = self.during("all")
-        return cumulative_error(
-            self.truth[scored], self.velocity(algorithm, sensor)[:, scored]
-        )
+        return cumulative_error(self.truth[scored], self.velocity(algorithm, sensor)[:, scored])
 
     def delay(self, algorithm, sensor=1):
         """Return by how much each run is late in a steady maneuver, in s, shape (runs,)."""

@@ -3,6 +3,7 @@
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -77,7 +78,7 @@ def doppler_filter(x, windows=None, first=None):
     n = x.shape[-1]
     if not (3 <= windows.min() and windows.max() <= min(first + 1, own.nfft) and first < n):
         raise ValueError(
-            f"windows must be from 3 to min(first + 1, {own.nfft}) samples long and first be one of "
+            f"windows must be from 3 to min(first + 1, {own.nfft}) samples long and first one of "
             f"the {n} samples, got {windows.tolist()} and {first}"
         )
     rows = x.reshape(-1, n)
@@ -140,6 +141,6 @@ def share(work, count):
     """Call a function of a slice of `count` records or runs, some at a time."""
     parts = min(os.cpu_count() or 1, 4)
     edges = np.linspace(0, count, parts + 1).astype(int)
-    slices = [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if b > a]
+    slices = [slice(a, b) for a, b in pairwise(edges) if b > a]
     with ThreadPoolExecutor(parts) as pool:
         list(pool.map(work, slices))

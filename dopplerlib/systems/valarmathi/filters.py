@@ -98,9 +98,7 @@ def filter_velocity(
     own, said = chosen(), stated()
     window = own.fixed_window if window is None else window
     if doppler.v.ndim != 4 or doppler.v.shape[2] not in (1, 2):
-        raise ValueError(
-            f"doppler.v must have shape (W, runs, 1 or 2, K), got {doppler.v.shape}"
-        )
+        raise ValueError(f"doppler.v must have shape (W, runs, 1 or 2, K), got {doppler.v.shape}")
     if window not in doppler.windows:
         raise ValueError(f"window must be one of {doppler.windows.tolist()}, got {window}")
     hop = _checks.whole_number("hop", hop)

@@ -29,9 +29,7 @@ def merged_doppler(doppler, snr_db):
         Variance of its measurements over that of one of the two.
     """
     R = measurement_variance(doppler.windows, snr_db).reshape(-1, 1, 1, 1, 1)
-    z, both = fuse_measurements(
-        doppler.v[:, :, 0, :, None], R, doppler.v[:, :, 1, :, None], R
-    )
+    z, both = fuse_measurements(doppler.v[:, :, 0, :, None], R, doppler.v[:, :, 1, :, None], R)
     seen = doppler.snr_db.mean(axis=2, keepdims=True)
     merged = FilteredDoppler(doppler.windows, doppler.first, z[:, :, None, :, 0], seen)
     return merged, float(both.flat[0] / R.flat[0])

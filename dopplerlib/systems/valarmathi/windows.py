@@ -74,7 +74,14 @@ def cumulative_error(v, estimate):
 
 
 def window_table(
-    accelerations=None, snrs_db=None, *, rng, runs=20, windows=None, judge="measurement", duration=1.2
+    accelerations=None,
+    snrs_db=None,
+    *,
+    rng,
+    runs=20,
+    windows=None,
+    judge="measurement",
+    duration=1.2,
 ):
     """Find the best window for every acceleration and signal-to-noise ratio by simulation.
 
