@@ -83,7 +83,7 @@ def velocities(results, run=0):
     -------
     matplotlib.figure.Figure
     """
-    with styled(7.0, 2.2 * len(results) + 0.4) as figure:
+    with styled(7.0, 2.5 * len(results) + 0.5) as figure:
         rows = figure.subplots(len(results), 3, sharex=True, sharey="row", squeeze=False)
         for result, axes in zip(results, rows, strict=True):
             panels = (
@@ -91,21 +91,26 @@ def velocities(results, run=0):
                 ("sensor 2", result.velocity(1, sensor=2)),
                 ("fused", result.velocity(3)),
             )
-            begin = result.time > 5.7
-            window = begin & (result.time < 7.0)
+            window = (result.time > 5.7) & (result.time < 7.0)
             for ax, (name, v) in zip(axes, panels, strict=True):
                 ax.plot(result.time, result.truth, color=TRUTH, ls="--", lw=1.2, label="truth")
                 ax.plot(result.time, v[run], color=OURS, lw=1.2, label="estimate")
                 ax.set_title(f"{result.path.name}, {name}")
-                inset = ax.inset_axes([0.55, 0.5, 0.43, 0.44])
+                inset = ax.inset_axes([0.3, 0.56, 0.68, 0.42])
                 inset.plot(result.time[window], result.truth[window], color=TRUTH, ls="--", lw=1)
                 inset.plot(result.time[window], v[run, window], color=OURS, lw=1)
                 inset.set(xticks=[], yticks=[])
                 inset.grid(False)
+            low, high = result.truth.min(), result.truth.max()
+            space = 0.05 * (high - low)
+            axes[0].set_ylim(low - space, high + 1.4 * (high - low))  # room for the insets
+            axes[0].set_yticks(
+                np.linspace(low, high, 3), [f"{v:.0f}" for v in np.linspace(low, high, 3)]
+            )
             axes[0].set_ylabel("velocity (m/s)")
         for ax in rows[-1]:
-            ax.set_xlabel("time (s)")
-        rows[0, 0].legend(loc="lower left", fontsize=8)
+            ax.set(xlabel="time (s)", xticks=range(0, 16, 5))
+        figure.legend(*rows[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
         return figure
 
 
@@ -127,7 +132,7 @@ def cumulative_errors(results, lines, ncols=2):
     """
     nrows = -(-len(results) // ncols)
     with styled(7.0, 2.5 * nrows + 0.5) as figure:
-        axes = figure.subplots(nrows, ncols, sharex=True, sharey=True, squeeze=False).flat
+        axes = figure.subplots(nrows, ncols, sharex=True, squeeze=False).flat
         for ax, result, shown in zip(axes, results, lines, strict=True):
             time = result.time[result.during("all")]
             for algorithm, sensor in shown:
@@ -139,8 +144,10 @@ def cumulative_errors(results, lines, ncols=2):
                     label=f"algorithm {algorithm}" + (f", sensor {sensor}" if single else ""),
                 )  # fmt: skip
             ax.set_title(result.path.name)
-            ax.set(xlabel="time (s)", ylabel="cee (%)", ylim=(0, None))
+            ax.set(ylabel="cee (%)", ylim=(0, None), xticks=range(0, 16, 5))
             ax.legend(fontsize=8.5)
+        for ax in figure.axes[-ncols:]:
+            ax.set_xlabel("time (s)")
         return figure
 
 
@@ -181,13 +188,13 @@ def sweep(snrs_db, errors, names, failed):
         return figure
 
 
-def autocorrelations(results):
-    """Draw the autocorrelation of innovations.
+def correlation(measured, law):
+    """Draw the autocorrelation of measurement errors beside its closed form.
 
     Parameters
     ----------
-    results : dict of str to ndarray, shape (lags,)
-        By what was filtered, from lag 1 on.
+    measured, law : ndarray, shape (lags + 1,)
+        From lag 0 on, in samples.
 
     Returns
     -------
@@ -195,10 +202,9 @@ def autocorrelations(results):
     """
     with styled(7.0, 2.8) as figure:
         ax = figure.subplots()
-        for (name, values), (color, line) in zip(results.items(), VARIANTS, strict=False):
-            lags = np.arange(1, len(values) + 1)
-            ax.plot(lags, values, color=color, ls=line, marker="o", ms=3, label=name)
+        ax.plot(measured, color=OURS, label="simulation")
+        ax.plot(law, color=TRUTH, ls="--", lw=1.2, label="closed form")
         ax.axhline(0, color=BOUND, lw=0.8)
-        ax.set(xlabel="lag (updates)", ylabel="autocorrelation", ylim=(-1, 1))
+        ax.set(xlabel="lag (samples)", ylabel="autocorrelation", ylim=(-0.6, 1))
         ax.legend()
         return figure

@@ -50,9 +50,9 @@ def test_a_sweep_shows_root_mean_squares_over_the_runs():
         np.testing.assert_allclose(ax.get_lines()[0].get_ydata(), [np.sqrt(12.5), 1.0])
 
 
-def test_every_path_and_every_autocorrelation_has_its_line():
+def test_every_path_and_both_correlations_have_their_line():
     several = [system.velocity_path(name) for name in ("path 1", "path 2")]
     (ax,) = draw.paths(several).axes
     np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), several[1].v)
-    (ax,) = draw.autocorrelations({"white": np.array([0.1, -0.1])}).axes
-    np.testing.assert_array_equal(ax.get_lines()[0].get_xdata(), [1, 2])
+    (ax,) = draw.correlation(np.array([1.0, 0.1]), np.array([1.0, 0.2])).axes
+    np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), [1.0, 0.2])

@@ -7,7 +7,15 @@ from .algorithms import ALGORITHMS, AlgorithmRuns, run_algorithms, snr_sweep
 from .claims import evidence
 from .doppler_filter import FilteredDoppler, doppler_filter, measurement_variance
 from .filters import VelocityTrack, filter_velocity
-from .modern import fusions, mean_nees, merged_doppler, supposed_world
+from .modern import (
+    error_correlation,
+    fusion_errors,
+    fusion_summary,
+    fusions,
+    honesty,
+    merged_doppler,
+    supposed_world,
+)
 from .noise import residual_variance, updated_residual
 from .published import DATA, VelocityPath, chosen, stated, velocity_path
 from .window_law import best_window, law_exponents, law_rmse, linear_cost
@@ -26,13 +34,16 @@ __all__ = [
     "chosen",
     "cumulative_error",
     "doppler_filter",
+    "error_correlation",
     "evidence",
     "filter_velocity",
+    "fusion_errors",
+    "fusion_summary",
     "fusions",
+    "honesty",
     "law_exponents",
     "law_rmse",
     "linear_cost",
-    "mean_nees",
     "measurement_variance",
     "merged_doppler",
     "residual_variance",

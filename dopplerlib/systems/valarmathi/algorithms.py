@@ -103,6 +103,18 @@ class AlgorithmRuns:
         # A velocity that is late by d errs by -a d: least squares.
         return -error @ a / (a @ a)
 
+    def summary(self):
+        """Return, by the name of the algorithm, errors and delay of each run by what they are."""
+        return {
+            name: {
+                "maneuver (m/s)": self.rmse(number, "maneuver"),
+                "constant velocity (m/s)": self.rmse(number, "constant"),
+                "whole record (m/s)": self.rmse(number),
+                "delay (ms)": 1e3 * self.delay(number),
+            }
+            for number, name in ALGORITHMS.items()
+        }
+
 
 def run_algorithms(name, snr_db, runs, table, *, rng):
     """Run all algorithms on the same samples.

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ...evaluation.consistency import nees
+from ...evaluation.whiteness import innovation_whiteness
 from ...tracking.fusion import covariance_intersection, fuse_measurements, fuse_state_vectors
 from .doppler_filter import FilteredDoppler, measurement_variance
 from .filters import filter_velocity
@@ -109,18 +110,107 @@ def supposed_world(runs, samples, snr_db, *, rng):
     return truth, FilteredDoppler(np.array([own.fixed_window]), 0, v, seen)
 
 
-def mean_nees(fused, truth):
-    """Return the mean of NEES over each run, shape (runs,).
+def fusion_summary(ways, truth):
+    """Return errors and NEES of each run, by the way of fusing and by what they are.
 
     Parameters
     ----------
-    fused : types.SimpleNamespace
-        One of `fusions`.
+    ways : dict of str to types.SimpleNamespace
+        As `fusions` returns it.
     truth : ndarray, shape (..., K, 2)
-        True velocity and acceleration at the same times; 2 would be right.
+        True velocity and acceleration; its last samples are those of the estimates.
 
     Returns
     -------
-    ndarray, shape (runs,)
+    dict of str to dict of str to ndarray, shape (runs,)
+        Root mean square errors, and the mean of NEES over the record, which should be 2.
     """
-    return nees(fused, truth).mean(axis=-1)
+    rows = {}
+    for name, one in ways.items():
+        late = truth[..., -one.x.shape[1] :, :]
+        rmse = np.sqrt(np.mean((one.x - late) ** 2, axis=-2))
+        rows[name] = {
+            "velocity (m/s)": rmse[:, 0],
+            "acceleration (m/s²)": rmse[:, 1],
+            "NEES": nees(one, late).mean(axis=-1),
+        }
+    return rows
+
+
+def fusion_errors(ways, path):
+    """Return the errors of the velocity of each run on a path, by the way of fusing and phase.
+
+    Parameters
+    ----------
+    ways : dict of str to types.SimpleNamespace
+        As `fusions` returns it, with every sample used.
+    path : VelocityPath
+        The truth.
+
+    Returns
+    -------
+    dict of str to dict of str to ndarray, shape (runs,)
+        Root mean squares in m/s.
+    """
+    phases = {"maneuver (m/s)": path.maneuver, "constant velocity (m/s)": path.constant}
+    rows = {}
+    for name, one in ways.items():
+        first = len(path.v) - one.x.shape[1]
+        square = (one.x[..., 0] - path.v[first:]) ** 2
+        rows[name] = {
+            phase: np.sqrt(square[:, part[first:]].mean(axis=-1)) for phase, part in phases.items()
+        }
+    return rows
+
+
+def honesty(track, v, skip):
+    """Compare what one sensor's filter claims with what it does, at a constant velocity.
+
+    Parameters
+    ----------
+    track : VelocityTrack
+        Of a target at constant velocity.
+    v : float
+        That velocity in m/s.
+    skip : int
+        Samples to leave out at the start.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (runs,)
+        Error and claimed error in m/s, the mean of NIS, which should be 1, and the correlation of
+        successive innovations, which should be 0.
+    """
+    late = slice(-(-skip // track.hop), None)
+    error = track.x[:, 0, late, 0] - v
+    nu, S = track.innovation[:, 0, late], track.S[:, 0, late]
+    white = innovation_whiteness(nu[..., None], S[..., None, None], lags=1)
+    return {
+        "error (m/s)": np.sqrt(np.mean(error**2, axis=-1)),
+        "claimed (m/s)": np.sqrt(track.P[:, 0, -1, 0, 0]),
+        "mean NIS": np.mean(nu**2 / S, axis=-1),
+        "innovations, lag 1": white.autocorrelation[..., 0, 0],
+    }
+
+
+def error_correlation(doppler, v, lags):
+    """Return the autocorrelation of the measurement errors, at a constant velocity.
+
+    Parameters
+    ----------
+    doppler : FilteredDoppler
+        Measurements of a target at constant velocity, with one window.
+    v : float
+        That velocity in m/s.
+    lags : int
+        Number of lags in samples.
+
+    Returns
+    -------
+    ndarray, shape (lags + 1,)
+        Mean over the runs and sensors, from lag 0 on; see `overlap_correlation_discrete`.
+    """
+    error = (doppler.v[0] - v).reshape(-1, doppler.v.shape[-1])
+    count = error.shape[-1]
+    products = [np.mean(error[:, : count - lag] * error[:, lag:]) for lag in range(lags + 1)]
+    return np.array(products) / products[0]

@@ -11,6 +11,7 @@ from scipy.stats import norm
 from dopplerlib import kf_predict, kf_update
 from dopplerlib.evaluation.intervals import mean_interval
 from dopplerlib.signal.interpolation import parabolic, parabolic_three_highest
+from dopplerlib.signal.laws import overlap_correlation_discrete
 from dopplerlib.signal.synthesis import iq_from_velocity, tone
 from dopplerlib.systems import valarmathi as system
 from dopplerlib.tracking.fusion import cross_covariance_step, fuse_state_vectors
@@ -218,15 +219,42 @@ def test_only_fusion_that_knows_what_is_common_believes_what_is_true():
     """NEES of 300 independent records; a million seeds give one outside of these limits."""
     truth, doppler = system.supposed_world(300, 400, 15.0, rng=np.random.default_rng(9))
     ways = system.fusions(doppler, 15.0, delayed=False)
-    late = truth[:, -ways["naive"].x.shape[1] :]
     found = {
-        name: mean_interval(system.mean_nees(one, late), 1 - FALSE_ALARM)
-        for name, one in ways.items()
+        name: mean_interval(one["NEES"], 1 - FALSE_ALARM)
+        for name, one in system.fusion_summary(ways, truth).items()
     }
     for name in ("one sensor", "Bar-Shalom and Campo", "measurement fusion"):
         assert found[name].low < 2 < found[name].high, name
     assert found["naive"].low > 2.2
     assert found["covariance intersection"].high < 1.8
+
+
+def test_a_filter_fed_with_overlapping_windows_claims_too_much_and_its_innovations_tell():
+    """20 runs with errors that differ from the claims by factors: no seed changes the order."""
+    v = np.full((20, 1, 3000), 200.0)
+    x = iq_from_velocity(v, T, OWN.wavelength, 15.0, rng=np.random.default_rng(11))
+    doppler = system.doppler_filter(x, [64])
+    often, seldom = (system.filter_velocity(doppler, 15.0, hop=hop) for hop in (1, 64))
+    for track, low, high in ((often, 2.0, 4.0), (seldom, 0.8, 1.1)):
+        told = system.honesty(track, 200.0, 640)
+        ratio = told["error (m/s)"].mean() / told["claimed (m/s)"].mean()
+        assert low < ratio < high
+        told = told["innovations, lag 1"].mean()
+        assert (told > 0.5) == (track is often)
+    # Some 20 x 45 independent windows: the correlation scatters by 0.03 or less.
+    found = system.error_correlation(doppler, 200.0, 80)
+    law = overlap_correlation_discrete(64, np.arange(81))
+    np.testing.assert_allclose(found, law, atol=Z * 0.03)
+
+
+def test_summaries_hold_the_errors_of_each_run(runs):
+    summary = runs.summary()[system.ALGORITHMS[3]]
+    np.testing.assert_array_equal(summary["whole record (m/s)"], runs.rmse(3))
+    ways = system.fusions(runs.doppler, 15.0, delayed=False)
+    errors = system.fusion_errors(ways, runs.path)
+    for name, number in (("one sensor", 1), ("naive", 3)):
+        expected = runs.rmse(number, "maneuver")
+        np.testing.assert_allclose(errors[name]["maneuver (m/s)"], expected, rtol=1e-6)
 
 
 def test_two_sensors_together_measure_with_half_of_the_variance():
