@@ -104,13 +104,17 @@ class AlgorithmRuns:
         return -error @ a / (a @ a)
 
     def summary(self):
-        """Return, by the name of the algorithm, errors and delay of each run by what they are."""
+        """Return, by the name of the algorithm, errors and delay of each run by what they are.
+
+        Delays are in halves of the fixed window.
+        """
+        half = (chosen().fixed_window - 1) / 2 * stated().T
         return {
             name: {
                 "maneuver (m/s)": self.rmse(number, "maneuver"),
                 "constant velocity (m/s)": self.rmse(number, "constant"),
                 "whole record (m/s)": self.rmse(number),
-                "delay (ms)": 1e3 * self.delay(number),
+                "delay (half windows)": self.delay(number) / half,
             }
             for number, name in ALGORITHMS.items()
         }
