@@ -58,9 +58,21 @@ notebooks: $(VENV)/.ready  ## execute the chapters in place
 notebooks-check: $(VENV)/.ready  ## execute the chapters again and compare every byte
 	$(PY) tools/notebooks.py --check
 
+.PHONY: record
+record: $(VENV)/.ready  ## execute the chapters again and write the page on reproducibility
+	$(PY) -m tools.record
+
 .PHONY: kernels
 kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
 	$(PY) -m dopplerlib.derive
+
+.PHONY: figure4
+figure4: $(VENV)/.ready  ## run the study of Fig 4 and score every reading of it
+	$(PY) tools/figure4.py
+
+.PHONY: seeds
+seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depend on the draw
+	$(PY) tools/seeds.py
 
 .PHONY: bench
 bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement

@@ -45,7 +45,6 @@ _HOME = {
     "average_interval": "evaluation.averages",
     "effective_samples": "evaluation.averages",
     "errors_by_direction": "evaluation.directions",
-    "median_interval": "evaluation.averages",
     "nees_samples": "evaluation.averages",
     "innovation_mean": "evaluation.whiteness",
     "innovation_whiteness": "evaluation.whiteness",

@@ -47,38 +47,64 @@ def check_verdicts(document, evidence):
 
 
 def check_flips(document, evidence):
-    """A verdict follows from the number: with a wrong one, or with ours, it is another."""
+    """A verdict follows from the number: with ours it is good, and just beyond ours it is bad."""
     for claim in claims_of(document):
-        ours = evidence[claim.id]
-        if claim.verdict in ("reproduced", "typical"):
-            # Far away on the side where the statement fails; both are wrong for a number.
-            sides = {"<": [-FAR], "<=": [-FAR], ">": [FAR], ">=": [FAR]}
-            for wrong in sides.get(claim.relation, [-FAR, FAR]):
-                verdict = _verdict(claim, ours, wrong)
-                assert verdict in ("contradicted", "atypical"), claim.id
-        else:
-            verdicts = {_verdict(claim, ours, right) for right in (-FAR, FAR, *_values(ours))}
-            assert verdicts - {claim.verdict}, claim.id
-            if claim.verdict != "underdetermined":
-                assert verdicts & {"reproduced", "typical"}, claim.id
+        for one in _readings(evidence[claim.id]):
+            for right in _right(claim, one):
+                assert _verdict(claim, one, right) in ("reproduced", "typical"), claim.id
+            for wrong in _wrong(claim, one):
+                assert _verdict(claim, one, wrong) in ("contradicted", "atypical"), claim.id
+            if isinstance(one, Estimate) and one.low < one.value < one.high:
+                assert _verdict(claim, one, one.value) == "underdetermined", claim.id
 
 
 def _verdict(claim, evidence, published):
-    if isinstance(claim.published, list) and np.isscalar(published):
-        published = [published] * len(claim.published)
-    return judge(replace(claim, published=published), _without_published(evidence)).verdict
+    evidence = Draws(evidence.values) if isinstance(evidence, Draws) else evidence
+    return judge(replace(claim, published=published), evidence).verdict
 
 
-def _without_published(evidence):
-    if isinstance(evidence, Readings):
-        return Readings({name: _without_published(e) for name, e in evidence.by_name.items()})
-    return Draws(evidence.values) if isinstance(evidence, Draws) else evidence
+def _readings(evidence):
+    return evidence.by_name.values() if isinstance(evidence, Readings) else [evidence]
 
 
-def _values(evidence):
-    """Return our numbers: what a document that agreed with us would have printed."""
-    if isinstance(evidence, Readings):
-        return [value for one in evidence.by_name.values() for value in _values(one)]
-    if isinstance(evidence, Draws):
+def _right(claim, evidence):
+    """Return what a document that agrees with us would have printed."""
+    if claim.kind == "relation":
+        low, high = _ends(evidence)
+        return [high + _step(claim, high) if "<" in claim.relation else low - _step(claim, low)]
+    if claim.kind == "random":
         return [float(np.median(evidence.values))]
-    return [evidence.value if isinstance(evidence, Estimate) else evidence]
+    return [np.asarray(evidence, float).tolist()]
+
+
+def _wrong(claim, evidence):
+    """Return numbers that are off by little more than they may be, each entry by itself."""
+    if claim.kind == "relation":
+        low, high = _ends(evidence)
+        return (
+            [low - _step(claim, low), -FAR]
+            if "<" in claim.relation
+            else [high + _step(claim, high), FAR]
+        )
+    if claim.kind == "random":
+        low, high = np.min(evidence.values), np.max(evidence.values)
+        return [low - _step(claim, low), high + _step(claim, high), -FAR, FAR]
+    ours = np.asarray(evidence, float)
+    wrong = []
+    for place in np.ndindex(ours.shape):
+        for step in (_step(claim, ours[place]), FAR):
+            for sign in (-1, 1):
+                moved = ours.copy()
+                moved[place] += sign * step
+                wrong.append(moved.tolist())
+    return wrong
+
+
+def _step(claim, value):
+    return 1.01 * claim.rounding + 1e-6 * (1 + abs(float(value)))
+
+
+def _ends(evidence):
+    if isinstance(evidence, Estimate):
+        return evidence.low, evidence.high
+    return float(evidence), float(evidence)

@@ -38,7 +38,7 @@ def best_velocity(z, array, sigma_f, p, in_plane=False):
 
     Notes
     -----
-    The Doppler shift is linear in the velocity, z = A(p) v, where the rows of A are the unit
+    The Doppler shift is linear in the velocity, h = A(p) v, where the rows of A are the unit
     vectors towards the sensors times 2 / wavelength. So v is a linear least-squares estimate, and
     the cost a function of position only: variable projection, Golub and Pereyra (1973).
 

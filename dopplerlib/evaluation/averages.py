@@ -1,4 +1,4 @@
-"""Averages of NIS and NEES: how many independent values they are worth; and their median."""
+"""Averages of NIS and NEES: how many independent values they are worth."""
 
 import numpy as np
 
@@ -124,10 +124,11 @@ def nees_samples(P, F, Q):
 
     Notes
     -----
-    The error of a right linear filter follows e_k = A_k e_(k-1) + noise that is new, with
-    A_k = (I - K_k H_k) F = P_k (F P_(k-1) F' + Q)^-1 F. Divided by the factors of the covariances,
-    P = L L', errors at two times have the covariance C = L_k^-1 A_k ... A_(j+1) L_j, and being
-    Gaussian, their squared lengths have the covariance 2 |C|^2 (Frobenius).
+    The error of a right linear filter follows e_k = Phi_k e_(k-1) + noise that is new, with
+    Phi_k = (I - K_k H_k) F = P_k (F P_(k-1) F' + Q)^-1 F. Divided by the factors of the
+    covariances, P = L L', errors at two times have the covariance
+    C = L_k^-1 Phi_k ... Phi_(j+1) L_j, and being Gaussian, their squared lengths have as
+    covariance twice the sum of the squares of all entries of C.
 
     Examples
     --------
@@ -154,47 +155,3 @@ def nees_samples(P, F, Q):
         total += np.sum(C**2)
         C = step[lag:] @ C[:-1]
     return float(n * len(P) ** 2 / (n * len(P) + 2 * total))
-
-
-def median_interval(values, confidence=0.95):
-    """Return bounds for the median of the distribution from which runs were drawn.
-
-    Parameters
-    ----------
-    values : array_like, shape (runs, ...)
-        One value for each run, not NaN.
-    confidence : float
-        Probability, at least, that the median lies between the bounds.
-
-    Returns
-    -------
-    lower, upper : ndarray, shape (...)
-        Two of the values.
-
-    Raises
-    ------
-    ValueError
-        If `values` is not finite, `confidence` is not between 0 and 1, or there are too few runs.
-
-    Notes
-    -----
-    Each value is below the median with probability 1/2, whatever the distribution: the number below
-    is binomial, and counting decides which values to take.
-
-    Examples
-    --------
-    All of six values are on one side in 2 of 64 cases, so that the median is between the outermost
-    with a probability of 97 %:
-
-    >>> [float(bound) for bound in median_interval([3, 1, 4, 1.5, 9, 2.6])]
-    [1.0, 9.0]
-    """
-    from scipy.stats import binom
-
-    values = np.sort(_checks.finite("values", values, None), axis=0)
-    tail = (1 - _checks.probability("confidence", confidence)) / 2
-    runs = len(values)
-    out = int(binom.ppf(tail, runs, 0.5)) - 1  # at most so many below, with less than `tail`
-    if out < 0:
-        raise ValueError(f"values must be of more runs for this confidence, got {runs}")
-    return values[out], values[runs - 1 - out]

@@ -32,18 +32,21 @@ class Scorecard:
         return f"{len(self.judgments)} claims: {total}"
 
     def _repr_markdown_(self):
-        head = ["| claim | published | ours | verdict |", "|---|---|---|---|"]
+        head = ["| claim | published | ours |", "|---|---|---|"]
         return "\n".join(head + [_row(one) for one in self.judgments])
 
 
 def _row(judgment):
     claim = judgment.claim
-    told = [f"**{claim.statement}** {claim.where}."]
+    badge = f'<span class="verdict verdict-{judgment.verdict}">{judgment.verdict}</span>'
+    # The first sentence is what is claimed; others tell how it was made measurable.
+    first, stop, rest = claim.statement.partition(". ")
+    told = [f"{badge} {claim.where}", f"**{first}{stop.strip()}** {rest}".strip()]
     if claim.note:
         told.append(claim.note)
     told.append(
-        f'<a href="{claim.page}.html#cell-{claim.cell}">{claim.page}</a> · '
-        f'<code class="test">{claim.test.split("::")[-1]}</code>'
+        f'<a href="{claim.page}.html#cell-{claim.cell}">{claim.page.split("_")[0]}</a> · '
+        f'<span class="test">{claim.test.split("::")[-1].replace("_", " ")}</span>'
     )
     relation = f"{claim.relation} " if claim.relation else ""
     published = f"{relation}{_number(judgment.published)} {claim.unit}".strip()
@@ -52,8 +55,7 @@ def _row(judgment):
         ours.append(f"published at the percentile {judgment.percentile}")
     if judgment.reading is not None:
         ours.append(f"nearest reading: {judgment.reading}")
-    badge = f'<span class="verdict verdict-{judgment.verdict}">{judgment.verdict}</span>'
-    cells = "<br>".join(told), published, "<br>".join(ours), badge
+    cells = "<br>".join(told), published, "<br>".join(ours)
     return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
 
 

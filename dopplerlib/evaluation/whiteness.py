@@ -112,7 +112,7 @@ def innovation_whiteness(innovation, S, lags=20):
     lags = _checks.whole_number("lags", lags)
     if lags >= samples:
         raise ValueError(f"lags must be less than the number of samples {samples}, got {lags}")
-    white = np.linalg.solve(np.linalg.cholesky(S), innovation[..., None])[..., 0]
+    white = _whiten(innovation, np.linalg.cholesky(S))
     if (np.ptp(white, axis=-2) == 0).any():
         raise ValueError("innovation must vary in time, got a component that is constant")
     white = white - white.mean(axis=-2, keepdims=True)
@@ -128,6 +128,15 @@ def innovation_whiteness(innovation, S, lags=20):
     statistic = np.sum(weight[:, None] * autocorrelation**2, axis=(-2, -1))
     dof = lags * m
     return Whiteness(autocorrelation, statistic, dof, chi2.sf(statistic, dof))
+
+
+def _whiten(innovation, L):
+    """Return L^-1 innovation; factors L that all runs share are used once for all of them."""
+    if innovation.ndim > 2 and L.size == np.prod(L.shape[-3:]):
+        runs = innovation.reshape(-1, *innovation.shape[-2:])
+        columns = np.linalg.solve(L.reshape(L.shape[-3:]), np.moveaxis(runs, 0, -1))
+        return np.moveaxis(columns, -1, 0).reshape(innovation.shape)
+    return np.linalg.solve(L, innovation[..., None])[..., 0]
 
 
 def _record(innovation, S):

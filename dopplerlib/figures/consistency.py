@@ -84,7 +84,7 @@ def clouds(errors, covariances, names):
                 )
             )  # fmt: skip
             ax.set_title(label)
-            ax.set(xlabel=f"{names[0]} in m", xlim=(-1, 1), ylim=(-0.6, 0.6))
+            ax.set(xlabel=f"{names[0]} in m", xlim=(-0.4, 0.4), ylim=(-0.3, 0.3))
         axes[0].set_ylabel(f"{names[1]} in m")
         axes[0].legend(loc="upper left")
         return figure
@@ -142,8 +142,13 @@ def averages_spread(averages, intervals):
                 for bound, text in zip(interval, (label, None), strict=True):
                     ax.axvline(bound, color=color, ls=ls, label=text)
             ax.set(xlabel=f"{name} averaged over a run", xlim=(2, 12))
-            ax.legend(loc="upper right")
         axes[0].set_ylabel("runs")
+        handles = {}  # the panels share labels
+        for ax in axes:
+            handles |= {
+                text: handle for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)
+            }
+        figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=3)
         return figure
 
 
@@ -173,7 +178,7 @@ def causes(results, interval, median):
                 # The first sample, at 0, belongs to a logarithmic axis at one interval.
                 time = result.time + (result.time[1] - result.time[0])
                 ax.plot(time, values, color=color, ls=ls, marker=marker, ms=4, label=label)
-            ax.set(xscale="log", yscale="log", xlabel="time in s", ylim=(0.1, 1000))
+            ax.set(xscale="log", yscale="log", xlabel="time in s", ylim=(0.05, 1000))
             ax.set_ylabel(f"median {name.upper()}")
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=2)

@@ -58,7 +58,7 @@ def error_maps(x, y, maps, arrays, velocities, columns=3, limits=(0.025, 1.0)):
         for ax in axes[-1]:
             ax.set_xlabel("y (m)")
         key = figure.colorbar(
-            area, ax=axes, location="bottom", aspect=45, extend="both", label="position error (m)"
+            area, ax=axes, location="bottom", aspect=45, extend="both", label="error (m)"
         )
         ticks = [t for t in (0.01, 0.025, 0.05, 0.1, 0.2, 0.5, 1) if limits[0] <= t <= limits[1]]
         key.set_ticks(ticks, labels=[f"{t:g}" for t in ticks])
@@ -91,9 +91,15 @@ def shares(limits, panels):
                     continue
                 color, style = next(variants)
                 low, middle, high = np.percentile(share, [2.5, 50, 97.5], axis=1)
+                middle[middle == 0] = np.nan  # not on this scale
                 ax.fill_between(limits, low, high, color=color, alpha=0.25, lw=0)
                 ax.loglog(limits, middle, style, color=color, label=label)
-            ax.set(title=title, xlabel="error (m)", xlim=(limits[0], limits[-1]), ylim=(5e-4, 1))
+            ax.set(
+                title=title,
+                xlabel="error (m)",
+                xlim=(0.9 * limits[0], 1.1 * limits[-1]),
+                ylim=(5e-4, 1),
+            )
             ticks = [limit for limit in (0.05, 0.1, 0.2, 0.5) if limits[0] <= limit <= limits[-1]]
             ax.set_xticks(ticks, labels=[f"{t:g}" for t in ticks])
             ax.set_xticks([], minor=True)
@@ -129,8 +135,13 @@ def line_profiles(axis, profiles, bound, lowest):
         ax.semilogy(axis, bound, color=OURS, label="bound across a line of sensors")
         ax.axhline(lowest, color=TRUTH, lw=1, ls=":")
         ax.annotate(
-            "lowest contour", (axis[0], lowest), (2, -11), textcoords="offset points", fontsize=9
+            "lowest contour",
+            (0, lowest),
+            (0, 3),
+            textcoords="offset points",
+            ha="center",
+            fontsize=9,
         )
         ax.set(xlabel="place on the line (m)", ylabel="position error (m)", ylim=(5e-3, 60))
-        ax.legend(loc="upper right")
+        figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=3)
         return figure

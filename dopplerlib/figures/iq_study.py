@@ -202,6 +202,6 @@ def colored(lag, autocorrelation, belief):
         right.set(yscale="log", xticks=range(len(belief)), xlim=(-0.6, len(belief) - 0.4))
         right.set_xticklabels([label.replace(", ", ",\n") for label in belief], fontsize=8)
         right.legend(loc="upper left")
-        top = max(max(pair) for pair in belief.values())
-        right.set_ylim(0.5, 2.5 * top)
+        values = [value for pair in belief.values() for value in pair]
+        right.set_ylim(0.6 * min(values), 2.5 * max(values))
         return figure

@@ -25,9 +25,9 @@ def reduced_cost(panels, marks, labels):
     -------
     matplotlib.figure.Figure
     """
-    styles = (("s", TRUTH), ("o", OURS), ("X", TRUTH))
+    styles = (("s", TRUTH), ("X", OURS))
     colors = BoundaryNorm(_LEVELS, 256)
-    with styled(7, 4.2) as figure:
+    with styled(7, 3.3) as figure:
         axes = figure.subplots(1, len(panels), squeeze=False)[0]
         named = {}
         for ax, (title, (across, up, cost)), points, names in zip(
@@ -37,7 +37,7 @@ def reduced_cost(panels, marks, labels):
             area = ax.contourf(across, up, off, _LEVELS, norm=colors, cmap="Blues_r", extend="max")
             ax.contour(across, up, off, [3], colors="white", linewidths=0.9)
             for (label, point), (mark, color) in zip(points.items(), styles, strict=False):
-                named[label] = ax.plot(*point, mark, color=color, ms=8, mec="white")[0]
+                named[label] = ax.plot(*point, mark, color=color, ms=6, mec="white")[0]
             ax.set(title=title, xlabel=names[0], ylabel=names[1], aspect="equal")
             ax.grid(False)
         key = figure.colorbar(

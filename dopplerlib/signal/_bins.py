@@ -1,5 +1,7 @@
 """What the estimators share that look at the bins of a discrete Fourier transform."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.fft
 
@@ -27,24 +29,17 @@ def limits(band, fs):
     return low, high, high - low >= fs * (1 - 1e-12)
 
 
+@dataclass(frozen=True)
 class Bins:
     """The transforms of windows, and which of their bins lie in the band."""
 
-    def __init__(self, x, fs, band, nfft=None, least=2):
-        x, self.fs = samples(x, fs, least)
-        self.n = x.shape[-1]
-        self.nfft = self.n if nfft is None else _checks.whole_number("nfft", nfft, self.n)
-        self.low, self.high, self.circular = limits(band, self.fs)
-        first = int(np.ceil(self.low * self.nfft / self.fs - 1e-9))
-        last = int(np.floor(self.high * self.nfft / self.fs + 1e-9))
-        if self.circular:
-            last = min(last, first + self.nfft - 1)
-        if last < first:
-            raise ValueError(
-                f"band must hold a bin, a multiple of {self.fs / self.nfft:g} Hz, got {band}"
-            )
-        self.X = scipy.fft.fft(x, self.nfft)
-        self.inside = np.arange(first, last + 1)
+    X: np.ndarray  # (..., nfft)
+    inside: np.ndarray  # (bins,)
+    n: int
+    nfft: int
+    fs: float
+    low: float
+    circular: bool
 
     def power(self):
         """Return the power of each bin in the band, shape (..., bins)."""
@@ -64,3 +59,19 @@ class Bins:
         """Return the frequency of bin k, which may be a fraction; around the end of a full band."""
         f = k * self.fs / self.nfft
         return self.low + (f - self.low) % self.fs if self.circular else f
+
+
+def transform(x, fs, band, nfft=None, least=2):
+    """Return the `Bins` of checked IQ samples."""
+    x, fs = samples(x, fs, least)
+    n = x.shape[-1]
+    nfft = n if nfft is None else _checks.whole_number("nfft", nfft, n)
+    low, high, circular = limits(band, fs)
+    first = int(np.ceil(low * nfft / fs - 1e-9))
+    last = int(np.floor(high * nfft / fs + 1e-9))
+    if circular:
+        last = min(last, first + nfft - 1)
+    if last < first:
+        raise ValueError(f"band must hold a bin, a multiple of {fs / nfft:g} Hz, got {band}")
+    inside = np.arange(first, last + 1)
+    return Bins(scipy.fft.fft(x, nfft), inside, n, nfft, fs, low, circular)

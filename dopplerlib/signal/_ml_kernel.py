@@ -40,16 +40,17 @@ def _power(re, im, first, n, u, wave):
     x0 = x1 = x2 = complex(0.0, 0.0)
     for start in range(0, n, BLOCK):
         r0 = i0 = r1 = i1 = r2 = i2 = 0.0
-        for a in range(min(BLOCK, n - start)):
+        # From the last sample to the first, running sums of running sums: they end as the sums of
+        # 1, a and a (a - 1) / 2 times a sample, without a multiplication.
+        for a in range(min(BLOCK, n - start) - 1, -1, -1):
             x, y = re[first + start + a], im[first + start + a]
-            r = x * wave[a] - y * wave[BLOCK + a]
-            i = x * wave[BLOCK + a] + y * wave[a]
-            r0 += r
-            i0 += i
-            r1 += a * r
-            i1 += a * i
-            r2 += a * a * r
-            i2 += a * a * i
+            r2 += r1
+            i2 += i1
+            r1 += r0
+            i1 += i0
+            r0 += x * wave[a] - y * wave[BLOCK + a]
+            i0 += x * wave[BLOCK + a] + y * wave[a]
+        r2, i2 = 2 * r2 + r1, 2 * i2 + i1
         t = start - (n - 1) / 2
         y0, y1, y2 = phase * complex(r0, i0), phase * complex(r1, i1), phase * complex(r2, i2)
         x0 += y0

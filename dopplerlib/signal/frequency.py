@@ -127,8 +127,8 @@ def ml_frequency_dc(x, fs, band=None):
     Notes
     -----
     With y the samples less their mean, Y their Fourier sum at f and D that of n ones, the
-    likelihood grows with |Y|^2 / (n - |D|^2 / n): the mean takes away from a slow tone too, and the
-    denominator gives it back.
+    likelihood grows with ``|Y|^2 / (n - |D|^2 / n)``: the mean takes away from a slow tone too, and
+    the denominator gives it back.
 
     Examples
     --------

@@ -72,7 +72,7 @@ def add_iq_imbalance(x, gain_db, phase_deg):
     gain_db : float
         Gain of Q over that of I in dB.
     phase_deg : float
-        By how much the angle between I and Q exceeds 90 degrees.
+        By how much Q leads where it should not, in degrees.
 
     Returns
     -------

@@ -8,7 +8,7 @@ approaches. They look for the highest bin in the ``band``, (lowest, highest) in 
 import numpy as np
 
 from .. import _checks
-from ._bins import Bins
+from ._bins import transform
 
 
 def peak_bin(x, fs, band=None, nfft=None):
@@ -42,7 +42,7 @@ def peak_bin(x, fs, band=None, nfft=None):
     >>> float(peak_bin(x, 1000.0))
     120.0
     """
-    bins = Bins(x, fs, band, nfft)
+    bins = transform(x, fs, band, nfft)
     return bins.hertz(bins.peak())
 
 
@@ -76,7 +76,7 @@ def parabolic(x, fs, band=None, nfft=None, scale="magnitude"):
     [120.74, 122.99]
     """
     _checks.one_of("scale", scale, ("magnitude", "log"))
-    bins = Bins(x, fs, band, nfft, least=3)
+    bins = transform(x, fs, band, nfft, least=3)
     k = bins.peak()
     y = [np.abs(bins.at(k + step)) for step in (-1, 0, 1)]
     if scale == "log":
@@ -116,7 +116,7 @@ def parabolic_three_highest(x, fs, band=None, nfft=None):
     >>> round(float(parabolic_three_highest(x, 1000.0, nfft=400)), 2)
     122.99
     """
-    bins = Bins(x, fs, band, nfft, least=3)
+    bins = transform(x, fs, band, nfft, least=3)
     if len(bins.inside) < 3:
         raise ValueError(f"band must hold three bins, got {len(bins.inside)} in {band}")
     magnitude = np.sqrt(bins.power())
@@ -160,7 +160,7 @@ def jacobsen(x, fs, band=None):
     >>> round(float(jacobsen(x, 1000.0)), 2)
     123.0
     """
-    bins = Bins(x, fs, band, least=3)
+    bins = transform(x, fs, band, least=3)
     k = bins.peak()
     return bins.hertz(k + _jacobsen(bins, k))
 
@@ -194,7 +194,7 @@ def candan(x, fs, band=None):
     >>> round(float(jacobsen(x, 1000.0)), 1), round(float(candan(x, 1000.0)), 1)
     (329.1, 330.1)
     """
-    bins = Bins(x, fs, band, least=3)
+    bins = transform(x, fs, band, least=3)
     k = bins.peak()
     return bins.hertz(k + _jacobsen(bins, k) * np.tan(np.pi / bins.n) * bins.n / np.pi)
 
@@ -228,7 +228,7 @@ def quinn1(x, fs, band=None):
     >>> round(float(quinn1(x, 1000.0)), 2)
     123.0
     """
-    bins = Bins(x, fs, band, least=3)
+    bins = transform(x, fs, band, least=3)
     k = bins.peak()
     left, right = _quinn(bins, k)
     return bins.hertz(k + np.where((left > 0) & (right > 0), right, left))
@@ -263,7 +263,7 @@ def quinn2(x, fs, band=None):
     >>> round(float(quinn2(x, 1000.0)), 2)
     123.0
     """
-    bins = Bins(x, fs, band, least=3)
+    bins = transform(x, fs, band, least=3)
     k = bins.peak()
     left, right = _quinn(bins, k)
     return bins.hertz(k + (left + right) / 2 + _kappa(right**2) - _kappa(left**2))
@@ -302,7 +302,7 @@ def aboutanios_mulgrew(x, fs, band=None, iterations=2):
     123.0
     """
     iterations = _checks.whole_number("iterations", iterations)
-    bins = Bins(x, fs, band)
+    bins = transform(x, fs, band)
     k = bins.peak()
     x = np.asarray(x)
     t = np.arange(bins.n) / bins.n

@@ -90,8 +90,8 @@ def sliding_doppler(x, fs, window, hop, estimator=ml_frequency, *, band=None, ta
 
     Notes
     -----
-    The noise variance is (mean |x|^2 - amp2) n / (n - 1.5): of 2n real numbers, frequency, phase
-    and amplitude take three.
+    The noise variance is ``(mean |x|^2 - amp2) n / (n - 1.5)``: of 2n real numbers, frequency,
+    phase and amplitude take three.
 
     Examples
     --------

@@ -13,7 +13,6 @@ from dopplerlib import (
     constant_velocity,
     effective_samples,
     kf,
-    median_interval,
     nees,
     nees_samples,
 )
@@ -131,20 +130,6 @@ def test_the_effective_interval_holds_its_share_and_the_naive_one_does_not(right
     assert share(chi2_interval(2, runs=200)) < 0.75
 
 
-@pytest.mark.parametrize(("runs", "places"), [(6, (1, 6)), (100, (40, 61)), (1000, (469, 532))])
-def test_the_interval_of_the_median_counts_places_as_tables_do(runs, places):
-    """Order statistics of the sign test at 95 %: for 100 values, the 40th and the 61st."""
-    lower, upper = median_interval(np.random.default_rng(33).permutation(runs) + 1)
-    assert (lower, upper) == places
-
-
-def test_the_median_lies_in_its_interval_as_often_as_promised_and_for_any_distribution():
-    """Of 2000 intervals, by chance of one in a million between 93.0 % and 98.5 %."""
-    values = np.random.default_rng(34).standard_cauchy((200, 2000)) ** 3
-    lower, upper = median_interval(values)
-    assert 0.93 < ((lower < 0) & (upper > 0)).mean() < 0.985
-
-
 @pytest.mark.parametrize(
     ("function", "arguments", "message"),
     [
@@ -153,8 +138,6 @@ def test_the_median_lies_in_its_interval_as_often_as_promised_and_for_any_distri
         (average_interval, (6, 5, 1.5), "confidence must lie"),
         (effective_samples, ([0.1, 0.1], 2), "fewer lags than samples 2, got 2"),
         (effective_samples, ([-0.9], 100), "positive variance"),
-        (median_interval, ([1, 2, 3],), "more runs"),
-        (median_interval, ([1, np.nan],), "finite"),
         (effective_samples, (0.5, 100), "must have shape"),
         (nees_samples, (np.eye(2), np.eye(2), np.eye(2)), "P must have shape"),
         (nees_samples, (-np.ones((3, 1, 1)), [[1]], [[0]]), "P must be positive definite"),

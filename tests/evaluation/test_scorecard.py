@@ -1,5 +1,7 @@
 """The table shows every claim, with its numbers, its verdict, and the way to the evidence."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from dopplerlib.evaluation.claims import Claim
@@ -34,11 +36,17 @@ def test_a_row_shows_numbers_verdict_cell_and_test():
     assert "50 (2.5 to 97.5)" in nis
     assert "percentile 49.5 (39.4 to 59.6)" in nis
     assert '<a href="figure6.html#cell-nis-cell">' in nis
-    assert "test_nis" in nis
+    assert "test nis" in nis
     assert "| < 0.3 m | 0.2 (0.19 to 0.21) m |" in limit
     assert "The start is not told." in open_
     assert "nearest reading: this" in open_
     assert 'verdict-underdetermined">underdetermined<' in open_
+
+
+def test_the_first_sentence_is_what_is_claimed():
+    claim = replace(CLAIMS["nis"], statement="It is large. We ask for one. Or two.")
+    row = Scorecard((judge(claim, Draws(np.arange(101.0))),))._repr_markdown_()
+    assert "**It is large.** We ask for one. Or two.<br>" in row
 
 
 def test_a_bar_in_a_formula_does_not_end_the_column():

@@ -87,6 +87,13 @@ def test_the_correlation_at_any_lag_of_innovations_without_memory_is_as_small_as
     assert chi2.ppf(FALSE_ALARM / 2, r.size) < total < chi2.isf(FALSE_ALARM / 2, r.size)
 
 
+def test_covariances_shared_by_all_runs_give_what_their_copies_give(white):
+    innovation, S = white[0][:6], white[1]
+    shared = innovation_whiteness(innovation.reshape(2, 3, SAMPLES, M), S[None, None])
+    copied = innovation_whiteness(innovation, np.tile(S, (6, 1, 1, 1)))
+    np.testing.assert_allclose(shared.statistic.ravel(), copied.statistic, rtol=1e-10)
+
+
 @pytest.mark.parametrize("rho", [0.3, -0.3])
 def test_memory_is_detected(rho):
     """Neighbors correlated by 0.3 raise the statistic from 15 by about 3 K 0.3^2 = 108.

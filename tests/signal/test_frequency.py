@@ -7,7 +7,7 @@ written down once and are not chosen.
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
-from scipy.stats import chi2, norm
+from scipy.stats import chi2, kstest, norm
 
 from dopplerlib.signal.frequency import ml_frequency, ml_frequency_dc
 from dopplerlib.signal.laws import crlb_frequency_std
@@ -93,6 +93,14 @@ def test_above_the_threshold_the_error_has_the_variance_of_the_bound(snr_db):
     assert chi2.ppf(FALSE_ALARM / 2, runs) < total
     assert total < chi2.isf(FALSE_ALARM / 2, runs) * (1.03 if snr_db == 0 else 1)
     assert abs(error.mean()) < norm.isf(FALSE_ALARM / 2) * bound / np.sqrt(runs)
+
+
+def test_above_the_threshold_the_error_is_gaussian():
+    """And with outliers it is not: 5000 errors each, in standard deviations of the bound."""
+    for snr_db, gaussian in ((0, True), (-8, False)):
+        f, x = tones(5000, snr_db, 16)
+        error = around(ml_frequency(x, FS) - f) / crlb_frequency_std(10 ** (snr_db / 10), N, FS)
+        assert (kstest(error, norm.cdf).pvalue > FALSE_ALARM) == gaussian
 
 
 @pytest.mark.parametrize("estimator", BOTH)

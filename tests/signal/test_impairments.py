@@ -45,6 +45,14 @@ def test_the_image_has_the_stated_power_and_the_mirrored_frequency(gain_db, phas
         assert power[17] / power[N - 17] == pytest.approx(image_rejection(gain_db, phase_deg))
 
 
+def test_q_leads_by_the_angle_and_is_larger_by_the_gain():
+    """The branches of a tone of phase a are cos(a) and g sin(a + phi)."""
+    a = np.angle(WHOLE)
+    x = add_iq_imbalance(WHOLE, 20 * np.log10(1.3), 12.0)
+    np.testing.assert_allclose(x.real, np.cos(a), atol=1e-12)
+    np.testing.assert_allclose(x.imag, 1.3 * np.sin(a + np.radians(12)), atol=1e-12)
+
+
 @pytest.mark.parametrize(("gain_db", "phase_deg"), [(1, 5), (-2, -10), (6, 40)])
 def test_whole_cycles_are_corrected_to_rounding(gain_db, phase_deg):
     x = np.stack([WHOLE, 3 * WHOLE])

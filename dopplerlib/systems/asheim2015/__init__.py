@@ -3,6 +3,7 @@
 Tracking a person using UWB pulse Doppler radar, master's thesis, NTNU Trondheim.
 """
 
+from .experiments import late_radar, usable_ranges
 from .measures import departure, distance_error, over_runs, rmse, usable_range
 from .one_radar import RadarTrack, filter_radar
 from .published import Settings, deviations, quoted, resolutions, scenario, settings, snr
@@ -21,6 +22,7 @@ from .two_radars import (
     central_filter,
     error_area,
     filter_then_triangulate,
+    one_scan_bound,
     raw_positions,
     table_3_2,
     triangulate,
@@ -39,9 +41,11 @@ __all__ = [
     "error_area",
     "filter_radar",
     "filter_then_triangulate",
+    "late_radar",
     "managed_tracks",
     "maneuver_track",
     "noisy_positions",
+    "one_scan_bound",
     "over_runs",
     "pda_radar",
     "quoted",
@@ -58,5 +62,6 @@ __all__ = [
     "table_3_2",
     "triangulate",
     "usable_range",
+    "usable_ranges",
     "walk",
 ]

@@ -6,7 +6,6 @@ from ... import _checks
 from ...estimation.linear_kalman import _predict, _update
 from ...estimation.radial_velocity import radial_velocity_terms, radial_velocity_update
 from ...evaluation.intervals import share_interval
-from ...evaluation.range_bounds import range_crlb
 from ...evaluation.verdicts import Draws, Readings
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...model.ranging_noise import detection_probability
@@ -18,6 +17,7 @@ from .stand_in import WALKS, walk
 from .two_radars import (
     error_area,
     filter_then_triangulate,
+    one_scan_bound,
     polar_jacobian,
     raw_positions,
     triangulate,
@@ -47,7 +47,7 @@ def evidence(*, rng, runs=200):
         **settings_and_formulas(),
         **one_radar(runs, simulated, resampled),
         **two_radars(runs, simulated, resampled),
-        **real_radars(runs, walked),
+        **real_radars(2 * runs, walked),
     }
 
 
@@ -126,13 +126,13 @@ def one_radar(runs, rng, resampling):
     t, truth = records.time, records.ranges[..., 0]
     raw = records.z[..., 0] - truth
     error = gated.x[..., 0] - truth
-    short = t <= 45.0
-    z, t45 = z[:, :, short], t[short]
+    short = records.until(40.0)
+    z, t40 = short.z[..., None, :], short.time
     plain = {
-        name: filter_radar(z, settings(name), doppler=False).x[..., 0] - truth[:, short]
+        name: filter_radar(z, settings(name), doppler=False).x[..., 0] - short.ranges[..., 0]
         for name in ("code", "text")
     }
-    twice = filter_radar(z[:, :, t45 <= 5], code, reuse_first=True).x[..., 0]
+    twice = filter_radar(z[:, :, t40 <= 5], code, reuse_first=True).x[..., 0]
     twice = twice - truth[:, t <= 5]
 
     def ratio(a, b, ta, tb, low, high, radar):
@@ -143,10 +143,10 @@ def one_radar(runs, rng, resampling):
     ekf_step = _largest_step_difference(records.z[0, 0, :300], code)
     return {
         "kf-improves": Readings(
-            {name: ratio(e, raw, t45, t, 20, 30, 0) for name, e in plain.items()}
+            {name: ratio(e, raw, t40, t, 20, 30, 0) for name, e in plain.items()}
         ),
-        "doppler-R1": ratio(error, plain["code"], t, t45, 5, 40, 0),
-        "doppler-R2": ratio(error, plain["code"], t, t45, 5, 40, 1),
+        "doppler-R1": ratio(error, plain["code"], t, t40, 5, 40, 0),
+        "doppler-R2": ratio(error, plain["code"], t, t40, 5, 40, 1),
         "R1-departs": Draws(times[:, 0]),
         "R1-in-range": Draws(times[:, 0]),
         "R2-departs": Draws(times[:, 1]),
@@ -154,7 +154,7 @@ def one_radar(runs, rng, resampling):
         "good-snr-R2": ratio(error, raw, t, t, 0, 10, 1),
         "follows-R1": ratio(free.x[..., 0] - truth, error, t, t, 49, 50, 0),
         "follows-R2": ratio(free.x[..., 0] - truth, error, t, t, 49, 50, 1),
-        "first-used-twice": ratio(twice, error, t45[t45 <= 5], t, 0, 5, 0),
+        "first-used-twice": ratio(twice, error, t40[t40 <= 5], t, 0, 5, 0),
         "ekf-needed": ekf_step,
     }
 
@@ -176,18 +176,25 @@ def two_radars(runs, rng, resampling):
     q = quoted()
     records = simulate(runs, rng=rng)
     t, truth, d = records.time, records.truth, records.distance
-    fused = filter_then_triangulate(records, settings("code"))
+    track = filter_radar(records.z[..., None, :], settings("code"))
+    fused = filter_then_triangulate(records, settings("code"), track=track)
     error = distance_error(fused.p, truth)
+    single = track.x[:, 0, :, 0] - records.ranges[0, :, 0]
     raw = raw_positions(records)
     raw_error = distance_error(raw.p, truth)
     gated_raw = distance_error(raw_positions(records, fused.updated).p, truth)
-    no_gate = {
-        name: distance_error(filter_then_triangulate(records, settings(name, gate=None)).p, truth)
-        for name in ("code", "text")
-    }
-    text = distance_error(filter_then_triangulate(records, settings("text")).p, truth)
-    plain = filter_then_triangulate(records, settings("code"), doppler=False)
-    plain = distance_error(plain.p, truth)
+
+    def other(end, name, gate="own", **options):
+        part = records.until(end)
+        result = filter_then_triangulate(part, settings(name, gate=gate), **options)
+        return np.pad(
+            distance_error(result.p, part.truth),
+            [(0, 0), (0, len(t) - len(part.time))],
+            constant_values=np.nan,
+        )
+
+    no_gate = {name: other(46.0, name, gate=None) for name in ("code", "text")}
+    text, plain = other(46.0, "text"), other(40.0, "code", doppler=False)
     at = int(np.argmin(np.hypot(*(truth[:, :2] - q["range"]["compared"]).T)))
     x_error = np.abs(raw.p[:, at, 0] - truth[at, 0])
     late = (t >= 40) & (t < 50)
@@ -198,14 +205,19 @@ def two_radars(runs, rng, resampling):
     def first_beyond(e):
         return np.minimum([usable_range(one[None], t, d) for one in e], d[-1])
 
-    ranges = over_runs(
-        lambda a, b: usable_range(b, t, d) / usable_range(a, t, d), error, raw_error,
-        rng=resampling,
-    )  # fmt: skip
+    def range_ratio(a, b):
+        return over_runs(
+            lambda a, b: usable_range(a, t, d) / min(usable_range(b, t, d), d[-1]),
+            a,
+            b,
+            rng=resampling,
+        )
+
     total, count = _squares(raw_error, t, 31, 33)
     return {
         "useful-range": Draws(first_beyond(error)),
-        "raw-range": ranges,
+        "raw-range": range_ratio(raw_error, error),
+        "fusion-shortens": range_ratio(error, single),
         "raw-at-four": Draws(x_error),
         "raw-beyond-four": Draws(np.sqrt(total / count)),
         "gate-triangulation": ratio(no_gate["code"], error, 44, 46),
@@ -304,10 +316,7 @@ def _range_at(radar, time):
 
 
 def _across(baseline):
-    sensors = radars(baseline)
-    p = np.array(scenario()["error_area"]["position"])
-    sigma = deviations(np.hypot(*(p - sensors).T))[:, 0]
-    return range_crlb(p, sensors, sigma)[0, 0]
+    return one_scan_bound(scenario()["error_area"]["position"], baseline)[0, 0]
 
 
 def _influence_ratio():

@@ -1,6 +1,6 @@
 """Tracks, what both radars measure of them, and the noise (Chapter 5)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,6 +35,25 @@ class Records:
     ranges: np.ndarray
     z: np.ndarray
     offset: float
+
+    def first(self, runs):
+        """Return the records of the first `runs` runs."""
+        return replace(self, z=self.z[:runs])
+
+    def until(self, end):
+        """Return the records up to the time `end` in s."""
+        scans = int(np.sum(self.time <= end + 1e-9))
+        return replace(
+            self,
+            time=self.time[:scans],
+            truth=self.truth[:scans],
+            ranges=self.ranges[:, :scans],
+            z=self.z[:, :, :scans],
+        )
+
+    def with_offset(self, offset):
+        """Return the records as they look to whoever believes in another offset, in s."""
+        return replace(self, offset=offset)
 
     @property
     def baseline(self):

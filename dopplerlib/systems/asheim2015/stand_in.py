@@ -179,7 +179,9 @@ def managed_tracks(time, detections, settings, manager=None):
 
     Notes
     -----
-    Detections go to tracks by least total NIS (`gnn_assign`); each that no track takes starts one.
+    Detections go to tracks by least total NIS (`gnn_assign`). One that no track takes starts a
+    track, unless it is inside the gate of another, be it one that this scan has started: a body
+    gives several echoes.
     """
     s = scenario()["stand_in"]
     manager = manager or TrackManager(s["hits"], s["window"], s["delete_after"])
@@ -208,7 +210,14 @@ def managed_tracks(time, detections, settings, manager=None):
             track["x"].append(track["state"])
             track["detected"].append(bool(j >= 0))
         alive = [track for track in alive if track["life"].status != DELETED]
-        for j in sorted(set(range(len(found))) - set(taken)):
+        started = []
+        for j in np.flatnonzero(~np.isfinite(cost).any(axis=0)):
+            S = settings.P0 + settings.R(found[j, 0]) * np.eye(2)
+            nu = np.reshape([found[j] - other for other in started], (-1, 2))
+            nis = np.sum(nu * np.linalg.solve(S, nu.T).T, axis=-1)
+            if chi2_gate(nis, 2, settings.gate_probability).any():
+                continue
+            started.append(found[j])
             track = {
                 "state": found[j], "P": settings.P0, "life": manager.start(), "confirmed": False,
                 "scan": [k], "x": [found[j]], "detected": [True],

@@ -7,12 +7,14 @@ import numpy as np
 from ... import _checks
 from ...estimation.extended_update import ekf_update
 from ...estimation.linear_kalman import _predict, _update
+from ...evaluation.range_bounds import range_crlb
 from ...model.kinematics import ncv_transition, wna_process_noise
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...tracking.bilateration import bilaterate
 from ...tracking.gates import chi2_gate, fixed_box_gate
 from .one_radar import filter_radar
 from .published import deviations, scenario
+from .scene import radars
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ def triangulate(d1, d2, baseline):
     return np.stack([x, np.where(valid | np.isnan(x), y, 0.0)], axis=-1), valid
 
 
-def filter_then_triangulate(records, settings, *, advance=False, **options):
+def filter_then_triangulate(records, settings, *, advance=False, track=None, **options):
     """Filter each radar by itself and triangulate the estimates: the thesis's system.
 
     Parameters
@@ -80,6 +82,8 @@ def filter_then_triangulate(records, settings, *, advance=False, **options):
         How each filter is set.
     advance : bool
         Whether the first radar's estimate is moved on to the time of the second one's.
+    track : RadarTrack, optional
+        What `filter_radar` returned for these records, if that is known already.
     **options
         See `filter_radar`.
 
@@ -87,7 +91,8 @@ def filter_then_triangulate(records, settings, *, advance=False, **options):
     -------
     PositionTrack
     """
-    track = filter_radar(records.z[..., None, :], settings, **options)
+    if track is None:
+        track = filter_radar(records.z[..., None, :], settings, **options)
     d = track.x[..., 0].copy()
     if advance:
         d[:, 0] += records.offset * track.x[:, 0, :, 1]
@@ -244,7 +249,7 @@ def polar_jacobian(x):
     return H
 
 
-def error_area(position=None, snr_db=None, n_sigma=None, baseline=None):
+def error_area(position=None, snr_db=None, n_sigma=None, baseline=None, points=1):
     """Return the corners of the area in which a triangulated position is expected (Fig 5.5).
 
     Parameters
@@ -257,11 +262,14 @@ def error_area(position=None, snr_db=None, n_sigma=None, baseline=None):
         Half the width of each ring in standard deviations; 3 if None.
     baseline : float, optional
         In m; 1 m if None.
+    points : int
+        Number of points on each of the four sides: 1 gives the corners, more the curved outline.
 
     Returns
     -------
-    ndarray, shape (4, 2)
-        Corners in m, around the area: left, far, right, near for a position in front.
+    ndarray, shape (4 points, 2)
+        Points in m, around the area: from the left corner to the far, the right and the near one
+        for a position in front.
 
     Raises
     ------
@@ -275,7 +283,9 @@ def error_area(position=None, snr_db=None, n_sigma=None, baseline=None):
     d = np.hypot(p[0] + np.array([b / 2, -b / 2]), p[1])
     law = None if snr_db is None else lambda d: np.full(np.shape(d), float(snr_db))
     half = n * deviations(d, law)[:, 0]
-    signs = np.array([[-1, 1], [1, 1], [1, -1], [-1, -1]])
+    corners = np.array([[-1, 1], [1, 1], [1, -1], [-1, -1], [-1, 1]])
+    at = np.arange(4 * _checks.whole_number("points", points)) / points
+    signs = np.stack([np.interp(at, range(5), c) for c in corners.T], axis=-1)
     x, y, valid = bilaterate(*np.moveaxis(d + signs * half, -1, 0), b)
     if not valid.all():
         raise ValueError(f"position must be one whose rings meet in four points, got {p.tolist()}")
@@ -309,3 +319,23 @@ def _step(x, P, z, sensor, settings):
     xu, Pu, _, _ = _update(x, P, nu + linear, H, R)
     x = np.where(accept[:, None], xu, x)
     return x, np.where(accept[:, None, None], Pu, P), accept, nis
+
+
+def one_scan_bound(p, baseline=None):
+    """Return the least covariance of a position from the two ranges of one scan.
+
+    Parameters
+    ----------
+    p : array_like, shape (..., 2)
+        True positions in m.
+    baseline : float, optional
+        In m; 1 m if None.
+
+    Returns
+    -------
+    ndarray, shape (..., 2, 2)
+        The bound of `range_crlb` with the noise that Eq 5.1 has at each range, in m^2.
+    """
+    p, sensors = _checks.finite("p", p, (2,)), radars(baseline)
+    lines = p[..., None, :] - sensors
+    return range_crlb(p, sensors, deviations(np.hypot(lines[..., 0], lines[..., 1]))[..., 0])

@@ -4,10 +4,10 @@ Estimation of Automotive Target Trajectories by Kalman Filtering, Buletinul Stii
 Universitatii Politehnica din Timisoara, Seria Electronica si Telecomunicatii, 58(72).
 
 Functions of the same name in several modules are reached through the module: `chain`, `crossing`,
-`lag`, `maneuvers`, `polar`, `regions`, `tracking`, `waveforms`.
+`lag`, `maneuvers`, `polar`, `regions`, `tracking`, `two_tones`, `waveforms`.
 """
 
-from . import chain, crossing, lag, maneuvers, polar, regions, tracking, waveforms
+from . import chain, crossing, lag, maneuvers, polar, regions, tracking, two_tones, waveforms
 from .published import KMH, Path2D, Settings, hard_turn, paths, settings
 
 __all__ = [
@@ -24,5 +24,6 @@ __all__ = [
     "regions",
     "settings",
     "tracking",
+    "two_tones",
     "waveforms",
 ]

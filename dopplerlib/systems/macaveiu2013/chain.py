@@ -101,7 +101,7 @@ def moves(z):
     ndarray of bool, shape (...)
         False for clutter: whatever has a range rate below that of one resolution cell.
     """
-    return np.abs(z[..., 2]) >= polar.polar()["v_min"]
+    return np.abs(z[..., 2]) >= polar.sensor()["v_min"]
 
 
 def objects(z):
@@ -193,3 +193,23 @@ def hidden(truth):
     ndarray of bool, shape (K,)
     """
     return ~moves(polar_radar_h(truth))
+
+
+def longest_gap(seen):
+    """Return the largest number of scans in a row without a detection.
+
+    Parameters
+    ----------
+    seen : ndarray of bool, shape (runs, K)
+        Whether the target is detected in a scan.
+
+    Returns
+    -------
+    ndarray of int, shape (runs,)
+    """
+    longest = np.zeros(len(seen), int)
+    current = np.zeros(len(seen), int)
+    for column in seen.T:
+        current = np.where(column, 0, current + 1)
+        longest = np.maximum(longest, current)
+    return longest

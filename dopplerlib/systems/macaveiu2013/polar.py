@@ -8,15 +8,15 @@ from ...estimation.linear_kalman import kf_update
 from ...estimation.track import Track
 from ...model.kinematics import ncv_transition
 from ...model.polar_radar import polar_position, polar_radar_h, polar_radar_jacobian
-from .published import polar, settings
+from .published import sensor, settings
 
 SIDEWAYS = 3.0  # m/s: deviation of the velocity across the line of sight before it is known; ours
 
 
 def noise():
     """Return the covariance of range, azimuth and range rate, shape (3, 3)."""
-    sensor = polar()
-    return np.diag([sensor["sigma_r"], sensor["sigma_phi"], sensor["sigma_rate"]]) ** 2
+    radar = sensor()
+    return np.diag([radar["sigma_r"], radar["sigma_phi"], radar["sigma_rate"]]) ** 2
 
 
 def measure(truth, runs, *, rng):
@@ -131,13 +131,13 @@ def naive(z, s=None):
     full = np.zeros((*z.shape[:-1], 4))
     full[..., ::2] = polar_position(z)
     full[..., 1::2] = z[..., 2:] * along
-    sensor = polar()
+    radar = sensor()
 
     def update(x, P, both):
         cartesian, seen = both[..., :4], both[..., 4:]
         _, E_z = start(seen)
         # Whoever takes the vector for the velocity takes it to be as good across as along.
-        E_z[..., 1::2, 1::2] = sensor["sigma_rate"] ** 2 * np.eye(2)
+        E_z[..., 1::2, 1::2] = radar["sigma_rate"] ** 2 * np.eye(2)
         return kf_update(x, P, cartesian, np.eye(4), E_z)
 
     return _track(np.concatenate([full, z], axis=-1), s, start(z[:, 0]), update)

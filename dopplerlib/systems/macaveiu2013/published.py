@@ -60,7 +60,7 @@ class Settings:
 
     @property
     def E_x(self):
-        """Covariance of the state noise, shape (4, 4): on the velocities alone."""
+        """Covariance of the state noise on the velocities, shape (4, 4)."""
         return np.diag([0.0, self.w] * 2) ** 2
 
     def with_(self, **changes):
@@ -104,7 +104,7 @@ def settings():
     return Settings(**file["sampling"], **file["noise"], **file["filter"], **file["score"], **radar)
 
 
-def polar():
+def sensor():
     """Return the noise of the polar sensor and its clutter rule, by name; all are ours.
 
     Returns

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ... import _checks
 from .published import paths, settings
 from .tracking import errors
 
@@ -85,15 +86,13 @@ def scores(runs, *, rng, s=None):
     )
 
 
-def claim_map(sigma_p, w, runs, *, rng, s=None):
-    """Return in how many runs the claims hold, over the noise and the filter's agility.
+def claim_map(rows, columns, runs, *, rng, s=None):
+    """Return in how many runs the claims hold, over two settings.
 
     Parameters
     ----------
-    sigma_p : sequence of float
-        Deviations of a measured position in m, one for each row.
-    w : sequence of float
-        Velocity steps of the filter in m/s, one for each column.
+    rows, columns : tuple (str, sequence of float)
+        Name and values of a setting: "sigma_p", "sigma_v" or "w" of `Settings`.
     runs : int
         Number of records of each path at each place of the map.
     rng : numpy.random.Generator
@@ -109,14 +108,18 @@ def claim_map(sigma_p, w, runs, *, rng, s=None):
     Raises
     ------
     ValueError
-        See `scores`.
+        If a name is none of the three; see `scores`.
     """
     s = settings() if s is None else s
-    shape = len(sigma_p), len(w)
+    (row, heights), (column, widths) = rows, columns
+    for name in (row, column):
+        _checks.one_of("the name of a setting", name, ("sigma_p", "sigma_v", "w"))
+    shape = len(heights), len(widths)
     names = ("Fig 7 much below 1 m", "all below 1 m", "10b and 11c worse", "all three")
     shares = {name: np.empty(shape) for name in names}
     for (i, j), child in zip(np.ndindex(shape), rng.spawn(shape[0] * shape[1]), strict=True):
-        one = scores(runs, rng=child, s=s.with_(sigma_p=sigma_p[i], w=w[j]))
+        here = s.with_(**{row: heights[i], column: widths[j]})
+        one = scores(runs, rng=child, s=here)
         held = [
             one.small_in_figure_7(),
             one.below_resolution(),

@@ -1,4 +1,4 @@
-"""The waveforms of Section II on simulated signals: what each can measure, and what it confuses.
+"""Pulses and chirps of Section II on simulated signals: what they measure, and what they confuse.
 
 All signals are at complex baseband, after mixing with what is sent (the pulse: with the carrier).
 Targets are rows of range in m and range rate in m/s, positive when receding; echoes have equal
@@ -34,8 +34,21 @@ def noisy(signal, snr_db, *, rng):
     return signal + deviation * np.tensordot([1, 1j], rng.standard_normal(shape), 1)
 
 
-def _echoes(targets, time):
-    """Return the delays of all targets at the times: shape (targets, *time.shape)."""
+def echoes(targets, time):
+    """Return the delays of the echoes of all targets.
+
+    Parameters
+    ----------
+    targets : array_like, shape (targets, 2)
+        Range in m at time zero and range rate in m/s.
+    time : array_like
+        Times in s, of any shape.
+
+    Returns
+    -------
+    ndarray, shape (targets, ...)
+        Delays in s; the axes after the first are those of `time`.
+    """
     targets = np.atleast_2d(np.asarray(targets, float))
     r, v = targets[:, :1], targets[:, 1:]
     return (2 / C) * (r + v * np.ravel(time)).reshape(len(targets), *np.shape(time))
@@ -68,7 +81,7 @@ def pulse_train(targets, pulses=64, interval=20e-6, rate=600e6, reach=120.0, s=N
     s = settings() if s is None else s
     width = 2 * s.range_resolution / C
     fast = np.arange(round(2 * reach / C * rate)) / rate
-    delay = _echoes(targets, np.arange(pulses) * interval)[..., None]
+    delay = echoes(targets, np.arange(pulses) * interval)[..., None]
     inside = (fast >= delay) & (fast < delay + width)
     return fast * C / 2, np.sum(inside * np.exp(-2j * np.pi * s.carrier * delay), axis=0)
 
@@ -98,7 +111,7 @@ def chirp_beat(targets, slope, duration, samples, begin=0.0, s=None):
     """
     s = settings() if s is None else s
     t = np.arange(samples) * duration / samples
-    delay = _echoes(targets, begin + t)
+    delay = echoes(targets, begin + t)
     # phi(t) - phi(t - delay) with phi(t) = 2 pi (f0 t + slope t^2 / 2)
     cycles = s.carrier * delay + slope * delay * (t - delay / 2)
     return np.exp(2j * np.pi * cycles).sum(axis=0)
@@ -173,137 +186,6 @@ def intersections(relations, frequencies):
         off = np.abs((targets @ relation)[:, None] - np.asarray(tones_there))
         misfit = np.maximum(misfit, off.min(axis=1))
     return targets, misfit
-
-
-def fsk(targets, step=1e6, samples=512, s=None):
-    """Return the beat signals of two tones sent in turn (Fig 2).
-
-    Parameters
-    ----------
-    targets : array_like, shape (targets, 2)
-        Range in m and range rate in m/s.
-    step : float
-        Difference of the two frequencies in Hz.
-    samples : int
-        Samples of each tone in one measurement of T.
-    s : Settings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    a, b : ndarray of complex, shape (samples,)
-        Tone b is sent half an interval after tone a.
-    """
-    s = settings() if s is None else s
-    t = np.arange(samples) * s.T / samples
-    delays = _echoes(targets, t), _echoes(targets, t + s.T / samples / 2)
-    carriers = s.carrier, s.carrier + step
-    return tuple(
-        np.exp(2j * np.pi * f * delay).sum(axis=0)
-        for f, delay in zip(carriers, delays, strict=True)
-    )
-
-
-def fsk_range(a, b, step=1e6, s=None):
-    """Return range and range rate of the strongest tone of an FSK measurement.
-
-    Parameters
-    ----------
-    a, b : ndarray of complex, shape (samples,)
-        From `fsk`.
-    step : float
-        Difference of the two frequencies in Hz.
-    s : Settings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    r, v : float
-        In m and m/s. The range is unambiguous within c / (2 step).
-    """
-    s = settings() if s is None else s
-    rate = len(a) / s.T
-    (frequency,) = tones(a, rate, 1)
-    phase = _phase_at(b, frequency, rate) - _phase_at(a, frequency, rate)
-    v = frequency * C / (2 * s.carrier)
-    turns = (phase / (2 * np.pi) - frequency * s.T / len(a) / 2) % 1
-    return turns * C / (2 * step), v
-
-
-def mfsk(targets, steps=512, shift=None, s=None):
-    """Return the beat signals of the two interleaved stepped chirps of MFSK (Fig 4).
-
-    Parameters
-    ----------
-    targets : array_like, shape (targets, 2)
-        Range in m and range rate in m/s.
-    steps : int
-        Number of steps of each chirp, in one measurement of T.
-    shift : float, optional
-        Frequency of chirp B minus that of chirp A in Hz; half a step downwards if None.
-    s : Settings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    a, b : ndarray of complex, shape (steps,)
-        One sample at the end of each step.
-    """
-    s = settings() if s is None else s
-    n, dwell = np.arange(steps), s.T / (2 * steps)
-    up = s.bandwidth / (steps - 1)
-    shift = -up / 2 if shift is None else shift
-    carriers = s.carrier + up * n, s.carrier + up * n + shift
-    times = (2 * n + 1) * dwell, (2 * n + 2) * dwell
-    return tuple(
-        np.exp(2j * np.pi * f * _echoes(targets, t)).sum(axis=0)
-        for f, t in zip(carriers, times, strict=True)
-    )
-
-
-def mfsk_relations(steps=512, shift=None, s=None):
-    """Return the 2 x 2 system of MFSK: [beat in Hz, phase in turns] = A [r, v].
-
-    Parameters
-    ----------
-    steps, shift, s
-        See `mfsk`.
-
-    Returns
-    -------
-    ndarray, shape (2, 2)
-    """
-    s = settings() if s is None else s
-    dwell = s.T / (2 * steps)
-    up = s.bandwidth / (steps - 1)
-    shift = -up / 2 if shift is None else shift
-    return (2 / C) * np.array([[up / (2 * dwell), s.carrier], [shift, s.carrier * dwell]])
-
-
-def mfsk_solve(a, b, count=1, shift=None, s=None):
-    """Return range and range rate of the strongest tones of an MFSK measurement.
-
-    Parameters
-    ----------
-    a, b : ndarray of complex, shape (steps,)
-        From `mfsk`.
-    count : int
-        Number of tones to solve for.
-    shift, s
-        See `mfsk`.
-
-    Returns
-    -------
-    ndarray, shape (count, 2)
-        Range in m and range rate in m/s. The phase is taken to lie within half a turn.
-    """
-    s = settings() if s is None else s
-    A = mfsk_relations(len(a), shift, s)
-    rate = len(a) / s.T
-    frequencies = tones(a, rate, count)
-    phase = [_phase_at(b, f, rate) - _phase_at(a, f, rate) for f in frequencies]
-    turns = (np.array(phase) / (2 * np.pi) + 0.5) % 1 - 0.5
-    return np.linalg.solve(A, np.stack([frequencies, turns])).T
 
 
 def rapid_chirps(targets, chirps=512, samples=256, s=None):
@@ -393,10 +275,3 @@ def strongest(r, v, power):
     """
     i, j = np.unravel_index(power.argmax(), power.shape)
     return float(r[j]), float(v[i])
-
-
-def _phase_at(signal, frequency, rate):
-    """Return the phase of a tone in a signal at its first sample, in rad."""
-    n = np.arange(len(signal))
-    window = np.hanning(len(signal))
-    return np.angle(np.sum(signal * window * np.exp(-2j * np.pi * frequency / rate * n)))

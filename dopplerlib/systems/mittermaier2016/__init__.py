@@ -4,15 +4,19 @@ Extended Kalman Doppler tracking and model determination for multi-sensor short-
 Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
-from .causes import Consistency, consistency_runs, matched_P0, switched_ekf
+from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
+from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
+from .noise_sweep import ERROR_LIMITS, NOISE_LEVELS, Figure4, SweepReading, figure4
 from .published import (
     PublishedFigure3,
+    PublishedFigure4,
     PublishedFigure6,
     Table2,
     published_figure3,
+    published_figure4,
     published_figure6,
     quoted,
     scenario,
@@ -20,40 +24,68 @@ from .published import (
     table2,
 )
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
+from .sweep_readings import (
+    SCORED_LEVELS,
+    SWEEP_READINGS,
+    dots_log_likelihood,
+    dots_structure,
+    figure4_readings,
+    figure4_score,
+    saved_figure4,
+)
 from .tracking import Figure6, figure6
 from .white_noise import WalkFilter, walk_filter
 
 __all__ = [
+    "ERROR_LIMITS",
+    "NOISE_LEVELS",
     "ORIENTATIONS",
+    "SCORED_LEVELS",
+    "SWEEP_READINGS",
     "Consistency",
     "ErrorMap",
+    "Figure4",
     "Figure6",
+    "Figure6Readings",
     "PublishedFigure3",
+    "PublishedFigure4",
     "PublishedFigure6",
     "Reading",
     "Starts",
+    "SweepReading",
     "Table2",
     "WalkFilter",
     "comparable",
     "consistency_runs",
+    "dots_log_likelihood",
+    "dots_structure",
     "faulty_filters",
     "figure3",
     "figure3_bound",
     "figure3_readings",
     "figure3_score",
+    "figure4",
+    "figure4_readings",
+    "figure4_score",
     "figure6",
+    "figure6_readings",
     "linear_filter",
     "linear_world",
     "matched_P0",
     "published_figure3",
+    "published_figure4",
     "published_figure6",
     "quoted",
+    "range_claims",
+    "ruled_out",
     "samples_needed",
+    "saved_figure4",
     "scenario",
     "shares_above",
     "signal_chain",
     "start_box",
     "start_misfit",
+    "still_counts",
     "switched_ekf",
     "table2",
     "table2_starts",

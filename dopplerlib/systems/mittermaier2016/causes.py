@@ -148,8 +148,8 @@ class Consistency:
 
 
 def consistency_runs(
-    runs, *, rng, keep=None, samples=None, start=None, P0=None, noise="common", sigma_f=None,
-    chunk=500, **switches,
+    runs, *, rng, keep=None, samples=None, start=None, P0=None, noise="common", sigma_p=None,
+    sigma_f=None, chunk=500, **switches,
 ):  # fmt: skip
     """Run the simulation example without a gate, and compare its errors with their covariances.
 
@@ -169,6 +169,9 @@ def consistency_runs(
         Its covariance; that of the scenario, 0.1 I, if None.
     noise : {"common", "independent"}
         See `constant_velocity`.
+    sigma_p : float, optional
+        Standard deviation of the push that the filter believes, in m/s^2; that of the scenario if
+        None.
     sigma_f : array_like, broadcast to (K, N), optional
         Standard deviation that the filter believes, in Hz; that of the scenario if None.
     chunk : int
@@ -194,7 +197,7 @@ def consistency_runs(
     start = _checks.finite("start", table2().x_ml if start is None else start, (6,))
     F, _ = constant_velocity(s.T, s.sigma_p)
     before = np.broadcast_to(np.linalg.solve(F, start[..., None])[..., 0], (runs, 6))
-    settings = (s.P0 if P0 is None else P0, s.T, s.sigma_p)
+    settings = (s.P0 if P0 is None else P0, s.T, s.sigma_p if sigma_p is None else sigma_p)
     sigma_f = s.sigma_f if sigma_f is None else sigma_f
     parts = []
     for first in range(0, runs, chunk):
@@ -226,6 +229,30 @@ def matched_P0():
     error = table2().x_ml - table2().x0
     variance = [np.mean(error[:3] ** 2)] * 3 + [np.mean(error[3:] ** 2)] * 3
     return np.diag(variance)
+
+
+def range_claims(result):
+    """Return how far the range is off, and how far the filter says that it is.
+
+    Parameters
+    ----------
+    result : Consistency
+        Runs of one filter.
+
+    Returns
+    -------
+    actual : ndarray, shape (M,)
+        Size of the error along the line of sight from the origin, in m: the median over the runs of
+        its absolute value, divided by that of a standard normal number, so that lost runs count
+        no more than others.
+    claimed : ndarray, shape (M,)
+        Median over the runs of its standard deviation as the filter believes it, in m.
+    """
+    u = result.truth[:, :3] / np.linalg.norm(result.truth[:, :3], axis=-1, keepdims=True)
+    error = np.sum((result.x - result.truth)[..., :3] * u, axis=-1)
+    variance = np.einsum("mi,rmij,mj->rm", u, result.P[..., :3, :3], u)
+    # 0.6745 is the upper quartile of a standard normal number.
+    return np.median(np.abs(error), axis=0) / 0.6745, np.median(np.sqrt(variance), axis=0)
 
 
 def _times(matrix, vector):

@@ -69,7 +69,7 @@ class Reading:
     def __str__(self):
         """Return a line of a table, the loss with the half width of its 95 % interval."""
         names = f"{self.orientation:13} {self.label:8} {self.quantity:8}"
-        return f"{names} {-self.behind:6.0f} +/- {1.96 * self.deviation:.0f}"
+        return f"{names} {0 - self.behind:6.0f} +/- {1.96 * self.deviation:.0f}"
 
 
 def figure3_score(error, published, panel, *, width=0.15, stray=0.02):

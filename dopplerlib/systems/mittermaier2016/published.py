@@ -72,7 +72,7 @@ class PublishedFigure3:
 
     @property
     def shown(self):
-        """Errors for drawing, in m: `lowest` where only known to be below it."""
+        """Return `error` with `lowest` in it where the error is only known to be below."""
         return np.where(self.below, self.lowest, self.error)
 
 
@@ -110,6 +110,23 @@ class PublishedFigure6:
     first_error: np.ndarray
     path_time: np.ndarray
     path: np.ndarray
+
+
+@dataclass(frozen=True)
+class PublishedFigure4:
+    """The dots of Fig 4, read off the paper's vector graphics.
+
+    Attributes
+    ----------
+    variance : ndarray, shape (31,)
+        Of the noise, in Hz^2.
+    position, velocity : ndarray, shape (31, 20)
+        Averaged errors in m and m/s, one column for each sequence in which they are drawn.
+    """
+
+    variance: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
 
 
 def scenario():
@@ -198,6 +215,24 @@ def published_figure6():
         path_time=np.array([(marker["sample"] - 1) * T for marker in markers]),
         path=np.array([marker["est_position_m"] for marker in markers]),
     )
+
+
+def published_figure4():
+    """Return the digitized dots of Fig 4.
+
+    Returns
+    -------
+    PublishedFigure4
+    """
+    tables = [
+        np.genfromtxt(DATA / f"fig4_{part}.csv", delimiter=",", names=True)
+        for part in ("position", "velocity")
+    ]
+    variance, level = np.unique(tables[0]["variance_hz2"], return_inverse=True)
+    dots = np.empty((2, len(variance), 20))
+    for values, table in zip(dots, tables, strict=True):
+        values[level, table["series"].astype(int) - 1] = table["error"]
+    return PublishedFigure4(variance, *dots)
 
 
 def signal_chain():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dopplerlib import gnn_assign, kf, nees, rts_smooth
+from dopplerlib import gnn_assign, nees, rts_smooth
 from dopplerlib.model.kinematics import ncv_transition
 from dopplerlib.model.polar_radar import polar_radar_h
 from dopplerlib.systems import macaveiu2013 as paper
@@ -49,6 +49,10 @@ def test_the_polar_filter_is_consistent_on_a_target_that_wanders_as_it_assumes()
 
 
 def test_the_range_rate_taken_for_the_velocity_stops_a_crossing_target():
+    """Naive speeds stay below 0.12 m/s, where the bound is 0.69.
+
+    The error of 20 runs is 0.032 (0.003) m/s: its bound is 20 deviations away.
+    """
     z = polar.measure(PATHS[8].truth, 20, rng=np.random.default_rng(3))
     middle = slice(230, 270)
     naive, ekf = polar.naive(z), polar.ekf(z)
@@ -67,7 +71,7 @@ def test_a_scan_that_is_missing_is_predicted():
 def test_the_clutter_rule_deletes_the_crossing_target_and_no_one_that_recedes():
     """|x / r| < v_min / v: with v = 5 km/h and y = 20 m, |x| < 2.38 m, which takes 3.4 s."""
     hidden = {figure: chain.hidden(path.truth) for figure, path in PATHS.items()}
-    ratio = polar.polar()["v_min"] / (5 * paper.KMH)
+    ratio = polar.sensor()["v_min"] / (5 * paper.KMH)
     width = 2 * 20 * ratio / np.sqrt(1 - ratio**2)
     assert hidden[8].sum() == pytest.approx(width / (5 * paper.KMH) / S.T, abs=1)
     assert [hidden[figure].sum() for figure in (7, 9, 10)] == [0, 0, 0]
@@ -84,6 +88,7 @@ def test_the_object_association_groups_what_fits_into_the_box():
 
 
 def test_the_scheme_finds_the_target_that_recedes_and_few_others():
+    """One run. The target is lost only if it goes undetected for 13 scans in a row: 1e-39."""
     scans = chain.simulate(PATHS[7].truth[:150], rng=np.random.default_rng(5))
     tracks = [track for track in chain.run(scans) if track.confirmed.any()]
     offs = [
@@ -112,13 +117,13 @@ def test_filter_and_smoother_of_the_comparison_are_the_library_s():
     z = tracking.measure(path.truth, 2, rng=np.random.default_rng(7))
     filtered, smoothed = maneuvers.cv(z)
     np.testing.assert_allclose(filtered, tracking.filtered(z), atol=1e-10)
-    for run in range(2):
-        alone = kf(z[run, 1:], ncv_transition(S.T), S.E_x, np.eye(4), S.E_z, z[run, 0], S.E_z)
-        x, _ = rts_smooth(alone.x, alone.P, ncv_transition(S.T), S.E_x)
-        np.testing.assert_allclose(smoothed[run, 1:], x, atol=1e-9)
+    runs = tracking.track(path, 2, rng=np.random.default_rng(7))  # the same records
+    x, _ = rts_smooth(runs.x, runs.P, ncv_transition(S.T), S.E_x)
+    np.testing.assert_allclose(smoothed, x, atol=1e-9)
 
 
 def test_constant_acceleration_follows_the_turn_without_lag_and_pays_in_noise():
+    """The mean of 20 runs is 2.7 (0.1) times the other one: the bound is 12 deviations away."""
     path = PATHS[10]
     still = maneuvers.ca(path.truth[None], q=0.01, a_max=1.45)[0]
     # The acceleration is known at the end, to what is left of the start.
@@ -131,6 +136,7 @@ def test_constant_acceleration_follows_the_turn_without_lag_and_pays_in_noise():
 
 
 def test_two_models_notice_the_hard_turn():
+    """Means of 20 runs are 0.84 (0.01) and 0.32 (0.01): both bounds are 8 deviations away."""
     path, turning = paper.hard_turn()
     z = tracking.measure(path.truth, 20, rng=np.random.default_rng(9))
     _, agile = maneuvers.two_models(z, (0.01, 0.055))
@@ -175,3 +181,8 @@ def test_far_apart_every_rule_follows_both():
             ),
             atol=1e-9,
         )
+
+
+def test_the_longest_gap_is_counted():
+    seen = np.array([[True, False, False, True, False], [False] * 5, [True] * 5])
+    assert chain.longest_gap(seen).tolist() == [2, 5, 0]

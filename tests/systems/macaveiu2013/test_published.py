@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib.systems import macaveiu2013 as paper
-from dopplerlib.systems.macaveiu2013.published import polar as published_polar
+from dopplerlib.systems.macaveiu2013.published import sensor
 
 PATHS = paper.paths()
 S = paper.settings()
@@ -48,9 +48,7 @@ def test_the_lane_change_of_one_period_is_a_lane_wide_and_comes_back():
 
 def test_bandwidth_and_range_resolution_belong_together():
     assert 299_792_458.0 / (2 * S.bandwidth) == pytest.approx(S.range_resolution, rel=1e-3)
-    assert published_polar()["v_min"] == pytest.approx(
-        S.wavelength / (2 * S.T), rel=3e-3
-    )  # three digits
+    assert sensor()["v_min"] == pytest.approx(S.wavelength / (2 * S.T), rel=3e-3)  # three digits
 
 
 def test_the_hard_turn_turns_by_a_quarter_at_constant_speed():

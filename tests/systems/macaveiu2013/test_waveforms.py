@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dopplerlib.systems.macaveiu2013 import settings
+from dopplerlib.systems.macaveiu2013 import settings, two_tones
 from dopplerlib.systems.macaveiu2013 import waveforms as w
 
 S = settings()
@@ -54,25 +54,25 @@ def test_a_third_slope_tells_the_ghosts():
 
 
 def test_fsk_measures_one_target():
-    r, v = w.fsk_range(*w.fsk(ONE))
+    r, v = two_tones.fsk_range(*two_tones.fsk(ONE))
     assert r == pytest.approx(30 - 5 * S.T / 2, abs=0.1)
     assert v == pytest.approx(-5, abs=0.01)
 
 
 def test_fsk_confuses_targets_of_the_same_speed_and_sees_none_that_stand():
-    r, _ = w.fsk_range(*w.fsk([[30.0, -5.0], [55.0, -5.0]]))
+    r, _ = two_tones.fsk_range(*two_tones.fsk([[30.0, -5.0], [55.0, -5.0]]))
     assert abs(r - 30) > 5 and abs(r - 55) > 5
     # The echo of a target at rest is a constant, like that of every wall and tree.
-    a, b = w.fsk([[30.0, 0.0]])
+    a, b = two_tones.fsk([[30.0, 0.0]])
     assert np.ptp(np.abs(np.diff(a))) < 1e-9 and np.ptp(np.angle(b / a)) < 1e-9
-    assert w.fsk_range(*w.fsk([[30.0, 0.0], [55.0, 0.0]]))[0] not in (30, 55)
+    assert two_tones.fsk_range(*two_tones.fsk([[30.0, 0.0], [55.0, 0.0]]))[0] not in (30, 55)
 
 
 @pytest.mark.parametrize("target", [[30.0, -5.0], [10.0, 3.0], [90.0, 12.0], [60.0, 0.0]])
 def test_mfsk_solves_for_range_and_speed_at_once(target):
     """Unambiguous as long as the phase stays within half a turn."""
-    assert abs((w.mfsk_relations() @ target)[1]) < 0.5
-    ((r, v),) = w.mfsk_solve(*w.mfsk([target]))
+    assert abs((two_tones.mfsk_relations() @ target)[1]) < 0.5
+    ((r, v),) = two_tones.mfsk_solve(*two_tones.mfsk([target]))
     # During the measurement the target moves by v T, and its Doppler grows with the carrier.
     assert r == pytest.approx(target[0] + target[1] * S.T / 2, abs=0.02 + 0.02 * abs(target[1]))
     # On average half the bandwidth above the carrier: 0.3 % of the speed.
@@ -81,11 +81,11 @@ def test_mfsk_solves_for_range_and_speed_at_once(target):
 
 def test_mfsk_tells_two_targets_unless_they_share_a_beat():
     targets = np.array([[30.0, -5.0], [50.0, 8.0]])
-    found = w.mfsk_solve(*w.mfsk(targets), count=2)
+    found = two_tones.mfsk_solve(*two_tones.mfsk(targets), count=2)
     np.testing.assert_allclose(found, targets, atol=0.5)
-    A = w.mfsk_relations()
+    A = two_tones.mfsk_relations()
     other = np.array([60.0, (A[0] @ ONE[0] - A[0, 0] * 60.0) / A[0, 1]])  # on the same beat
-    ((r, _),) = w.mfsk_solve(*w.mfsk([*ONE, other]), count=1)
+    ((r, _),) = two_tones.mfsk_solve(*two_tones.mfsk([*ONE, other]), count=1)
     assert abs(r - 30) > 3 and abs(r - 60) > 3
 
 

@@ -6,6 +6,7 @@ or as said. The seeds were written down once and are not chosen.
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from dopplerlib import chi2_interval, doppler_shift, ekf, kf, simulate
 from dopplerlib.systems import mittermaier2016 as paper
@@ -110,6 +111,12 @@ def test_the_second_order_filter_is_less_sure_and_in_a_linear_world_the_same(rec
     assert (np.trace(second.S, axis1=-2, axis2=-1) > np.trace(first.S, axis1=-2, axis2=-1))[
         :, 0
     ].all()
+    F, Q = paper.causes.constant_velocity(SCENARIO.T, SCENARIO.sigma_p)
+    mean, covariance = _missed(
+        (F @ paper.table2().x_ml)[None], (F @ SCENARIO.P0 @ F.T + Q)[None], SCENARIO.array
+    )
+    np.testing.assert_allclose(first.innovation[:, 0] - second.innovation[:, 0], mean[[0] * 20])
+    np.testing.assert_allclose(second.S[:, 0] - first.S[:, 0], covariance[[0] * len(second.S)])
     flat = {"path": truth[:20], "curvature": 0.0}
     np.testing.assert_array_equal(
         paper.switched_ekf(*settings(z), **flat, second_order=True).x,
@@ -146,6 +153,22 @@ def test_the_matched_covariance_has_the_size_of_the_printed_errors():
     assert np.sqrt(np.trace(P0[3:, 3:])) == pytest.approx(
         quoted["velocity_error_norm_m_s"], abs=0.0015
     )
+
+
+def test_the_range_claims_are_along_the_line_of_sight():
+    """Errors of 0.2 m along it in normal quantiles, and any error across it; a known P."""
+    quantile = norm.ppf((np.arange(999) + 0.5) / 999)
+    truth = np.array([[3.0, 4.0, 0.0, 1.0, 1.0, 1.0], [0.0, 0.0, 2.0, 1.0, 1.0, 1.0]])
+    along = np.array([[0.6, 0.8, 0], [0, 0, 1.0]])
+    across = np.array([[-0.8, 0.6, 5], [7, 0, 0]])
+    x = np.tile(truth, (999, 1, 1))
+    x[..., :3] += 0.2 * quantile[:, None, None] * along + across
+    P = np.diag([0.01, 0.04, 0.09, 1, 1, 1])[None, None].repeat(2, axis=1)
+    actual, claimed = paper.range_claims(
+        paper.Consistency(np.arange(2.0), truth, x, P, None, None, None)
+    )
+    np.testing.assert_allclose(actual, 0.2, rtol=2e-3)  # 0.6745 and 999 quantiles
+    np.testing.assert_allclose(claimed, [np.sqrt(0.36 * 0.01 + 0.64 * 0.04), 0.3], rtol=1e-12)
 
 
 # What the chapter concludes, with bounds that hold for any seed
@@ -192,8 +215,7 @@ def test_two_samples_make_the_filter_sure_of_the_range_and_a_tangent_at_the_trut
         result = paper.consistency_runs(
             100, rng=np.random.default_rng(48), keep=[1], samples=2, **options
         )
-        u = result.truth[0, :3] / np.linalg.norm(result.truth[0, :3])
-        claimed[label] = np.median(np.sqrt(u @ result.P[:, 0, :3, :3] @ u))
+        claimed[label] = paper.range_claims(result)[1]
     assert claimed["estimate"] < 0.1 < 0.3 < claimed["path"]
 
 

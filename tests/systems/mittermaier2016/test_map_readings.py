@@ -45,12 +45,13 @@ def test_an_orientation_is_the_map_of_that_array_and_velocity(
     published, orientation, axis, velocity
 ):
     """Computed anew for an array along x, where the library turns the map of one along y."""
-    seen = paper.ORIENTATIONS[orientation](paper.figure3_bound())
+    bound = paper.figure3_bound(samples=10, likelihood="moving")  # that of one is symmetric
+    seen = paper.ORIENTATIONS[orientation](bound)
     array = RadarArray.linear(5, 0.4, axis=axis)
     off_axes = [i for i in range(39) if i != 19]
     for i, j in np.random.default_rng(44).choice(off_axes, (40, 2)):
         x = [published.x[i], published.y[j], 0, *np.multiply(np.sqrt(2), velocity), 0]
-        P = crlb(x, array, published.sigma_f, free=PLANE)
+        P = crlb(x, array, published.sigma_f, 10, published.T, "moving", free=PLANE)
         # The inverse of a nearly singular matrix has lost half of the digits.
         assert seen[i, j] == pytest.approx(np.sqrt(P[0, 0] + P[1, 1]), rel=1e-6)
 
@@ -117,6 +118,26 @@ def test_the_right_map_is_turned_too_and_its_estimator_knew_that_the_target_move
     for other in readings:
         if other.label == "static" or other.orientation in ("as printed", "array turned"):
             assert other.behind > 5 * other.deviation
+
+
+def test_the_bad_corners_are_those_of_the_turned_velocity(published, left):
+    """The text says top right and bottom left; the printed velocity makes them the other two."""
+    (ours,) = left.values()
+    x, y = published.x[:, None], published.y
+    far = (np.abs(x) > 0.3) & (np.abs(y) > 0.3) & paper.comparable(published, 0)
+
+    def excess(error):
+        """Share of errors above 0.2 m at the top right and bottom left, less the others."""
+        there, elsewhere = (
+            paper.shares_above(error, [0.2], far & (sign * x * y > 0)).mean() for sign in (1, -1)
+        )
+        return there - elsewhere
+
+    # 676 places in either pair of corners: a standard error of 2 % for one draw of each.
+    assert excess(published.error[0][..., None]) > 0.06
+    for name, turn in paper.ORIENTATIONS.items():
+        expected = -1 if name in ("as printed", "array turned") else 1
+        assert expected * excess(turn(ours.position)) > 0.06
 
 
 def test_neither_position_nor_state_gives_the_shares_of_the_right_map(published, right):

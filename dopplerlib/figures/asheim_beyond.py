@@ -1,0 +1,148 @@
+"""Figures of what two radars could do at best, and of trackers beyond those of the thesis."""
+
+import numpy as np
+from matplotlib.patches import Ellipse
+
+from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, styled
+
+
+def bound_map(x, y, deviation, sensors, points, covariances, scale, baselines, across):
+    """Draw the bound on a position over the plane, its ellipses, and what the baseline does.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (M,) and (L,)
+        Coordinates of the grid in m.
+    deviation : ndarray, shape (L, M)
+        Root of the trace of the bound in m.
+    sensors : ndarray, shape (2, 2)
+        Positions of the radars in m.
+    points : ndarray, shape (J, 2)
+        Where ellipses are drawn.
+    covariances : ndarray, shape (J, 2, 2)
+        Bounds there.
+    scale : float
+        Half axes of an ellipse in standard deviations.
+    baselines : ndarray, shape (B,)
+        Baselines in m.
+    across : dict of str to ndarray, shape (B,)
+        Bounds on a standard deviation by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.4) as figure:
+        left, right = figure.subplots(1, 2, width_ratios=(5, 4))
+        levels = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0]
+        lines = left.contour(x, y, deviation, levels, colors=BOUND, linewidths=1.0)
+        left.clabel(lines, fmt="%g m", fontsize=8)
+        for p, P in zip(points, covariances, strict=True):
+            values, vectors = np.linalg.eigh(P)
+            angle = np.degrees(np.arctan2(vectors[1, 1], vectors[0, 1]))
+            left.add_patch(
+                Ellipse(p, *(2 * scale * np.sqrt(values[::-1])), angle=angle, fc=OURS, alpha=0.5)
+            )
+            left.plot(*p, ".", color=TRUTH, ms=4)
+        left.plot(*sensors.T, "o", color=SENSOR)
+        left.set(xlabel="x in m", ylabel="y in m", ylim=(-0.4, 5.6), aspect="equal")
+        for (label, values), (color, ls) in zip(across.items(), VARIANTS, strict=False):
+            right.plot(baselines, values, color=color, ls=ls, label=label)
+        right.set(xlabel="baseline in m", ylabel="least standard deviation in m", yscale="log")
+        right.legend(loc="upper right")
+        return figure
+
+
+def consistency(time, panels, interval):
+    """Draw averages of NIS or NEES over time beside where they should lie.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    panels : dict of str to dict of str to ndarray, shape (K,)
+        For each title, averages divided by their degrees of freedom by label.
+    interval : sequence of tuple (low, high)
+        Where the average of a consistent filter lies, for each panel.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.1) as figure:
+        axes = figure.subplots(1, len(panels), squeeze=False)[0]
+        for ax, (title, series), bounds in zip(axes, panels.items(), interval, strict=True):
+            ax.axhspan(*bounds, color=BOUND, alpha=0.3, lw=0, label="consistent, 95 %")
+            for (label, values), (color, ls) in zip(series.items(), VARIANTS, strict=False):
+                ax.plot(time, values, color=color, ls=ls, lw=1.2, label=label)
+            ax.set(title=title, xlabel="time in s", yscale="log")
+            ax.legend(fontsize=8.5)
+        axes[0].set_ylabel("average / degrees of freedom")
+        return figure
+
+
+def reach(results):
+    """Draw usable ranges with their intervals, by experiment and tracker.
+
+    Parameters
+    ----------
+    results : dict of str to dict of str to Estimate
+        For each experiment, the usable range of each tracker in m; infinite values are drawn at
+        the edge.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.0) as figure:
+        ax = figure.subplots()
+        labels = list(next(iter(results.values())))
+        edge = 7.2
+        styles = dict(zip(labels, ((ORANGE, "s"), (PINK, "^"), (OURS, "o")), strict=True))
+        for row, series in enumerate(results.values()):
+            for i, (label, value) in enumerate(series.items()):
+                y = row + 0.22 * (i - (len(labels) - 1) / 2)
+                color, mark = styles[label]
+                low, middle, high = (min(v, edge) for v in (value.low, value.value, value.high))
+                ax.plot([low, high], [y, y], color=color, lw=1.6)
+                ax.plot(middle, y, ">" if value.value > edge else mark, color=color, ms=6)
+        for label, (color, mark) in styles.items():
+            ax.plot([], [], mark, color=color, ms=6, label=label)
+        ax.set_yticks(range(len(results)), results)
+        ax.set(xlabel="useful up to this distance from the origin in m", xlim=(4.4, 7.4))
+        ax.set_ylim(len(results) - 0.5, -0.5)
+        figure.legend(loc="outside lower center", ncols=3, fontsize=8.5)
+        return figure
+
+
+def offsets(offset, errors):
+    """Draw the error over how late the second radar is.
+
+    Parameters
+    ----------
+    offset : ndarray, shape (M,)
+        In s.
+    errors : dict of str to list of Estimate
+        Root mean square errors in m by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(6.0, 3.2) as figure:
+        ax = figure.subplots()
+        for (label, values), (color, ls) in zip(errors.items(), VARIANTS, strict=False):
+            middle = [value.value for value in values]
+            ax.plot(offset, middle, color=color, ls=ls, marker="o", ms=4, label=label)
+            ax.fill_between(
+                offset,
+                [value.low for value in values],
+                [value.high for value in values],
+                color=color,
+                alpha=0.2,
+                lw=0,
+            )
+        ax.set(xlabel="radar 2 measures later by, in s", ylabel="RMS position error in m")
+        ax.set(yscale="log")
+        ax.legend(fontsize=9)
+        return figure

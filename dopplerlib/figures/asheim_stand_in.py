@@ -1,0 +1,151 @@
+"""Figures of the SIMULATED stand-in for the thesis's recordings; each says so in its title."""
+
+import numpy as np
+
+from .asheim import MEASURED
+from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, styled
+
+LABEL = "SIMULATED"
+
+
+def records(time, panels, window, gap):
+    """Draw detections, the chosen ones and the filtered range over time (Figs 6.1 to 6.4).
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time of each scan in s.
+    panels : dict of str to dict
+        For each title: `detections` (K, M), and optionally `chosen` (K,), `filtered` (K,) and
+        `truth` (K,); ranges in m.
+    window : tuple of float
+        Ranges between which the radar sees something, in m.
+    gap : tuple of float
+        Between these times nothing is seen, in s.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.4) as figure:
+        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+        for ax, (title, data) in zip(axes, panels.items(), strict=True):
+            ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
+            for edge in window:
+                ax.axhline(edge, color=BOUND, lw=0.8, ls=":")
+            d = data["detections"]
+            ax.plot(np.repeat(time, d.shape[1]), d.ravel(), "o", mfc="none", mec=MEASURED, ms=4,
+                    label="detections")  # fmt: skip
+            if "truth" in data:
+                ax.plot(time, data["truth"], color=TRUTH, ls="--", label="true")
+            if "chosen" in data:
+                ax.plot(time, data["chosen"], "o", color=SENSOR, ms=4, label="chosen")
+            if "filtered" in data:
+                ax.plot(time, data["filtered"], "+", color=OURS, ms=6, mew=1.4, label="filtered")
+            ax.set(title=f"{LABEL}: {title}", xlabel="time in s", ylim=(0.5, 7.5))
+        axes[0].set_ylabel("range in m")
+        handles, labels = axes[-1].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=4)
+        return figure
+
+
+def positions(truth, raw, estimate, sensors):
+    """Draw triangulated positions in the plane (Fig 6.4(c)).
+
+    Parameters
+    ----------
+    truth, raw, estimate : ndarray, shape (K, 2)
+        Positions in m.
+    sensors : ndarray, shape (2, 2)
+        Positions of the radars in m.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(5.0, 4.6) as figure:
+        ax = figure.subplots()
+        ax.plot(*raw.T, "o", mfc="none", mec=MEASURED, ms=5, label="detections, triangulated")
+        ax.plot(*estimate.T, "+", color=OURS, ms=7, mew=1.5, label="filtered, triangulated")
+        ax.plot(*truth.T, color=TRUTH, ls="--", label="true")
+        ax.plot(*sensors.T, "o", color=SENSOR, ms=7)
+        ax.set(title=f"{LABEL}: position from both radars", xlabel="x in m", ylabel="y in m")
+        ax.set(xlim=(-3, 3), ylim=(-0.3, 6.2))
+        ax.legend(loc="lower left", fontsize=8.5)
+        return figure
+
+
+def coasting(time, truth, runs, gap, titles):
+    """Draw the filtered ranges of many walks through the gap.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time of each scan in s.
+    truth : sequence of ndarray, shape (K,)
+        True range for each panel in m.
+    runs : sequence of ndarray, shape (runs, K)
+        Filtered ranges in m.
+    gap : tuple of float
+        Between these times nothing is seen, in s.
+    titles : sequence of str
+        One for each panel.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.2) as figure:
+        axes = figure.subplots(1, len(runs), sharey=True)
+        for ax, true, d, title in zip(axes, truth, runs, titles, strict=True):
+            ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
+            ax.plot(time, d.T, color=OURS, lw=0.6, alpha=0.5)
+            ax.plot([], [], color=OURS, lw=0.8, label=f"filtered, {len(d)} walks")
+            ax.plot(time, true, color=ORANGE, ls="--", lw=2, label="true")
+            ax.set(title=f"{LABEL}: {title}", xlabel="time in s", ylim=(0, 12))
+            ax.legend(loc="upper left")
+        axes[0].set_ylabel("range in m")
+        return figure
+
+
+def managed(time, detections, tracks, truth, gap, alternative):
+    """Draw confirmed tracks of one record, and what association by probability makes of it.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time of each scan in s.
+    detections : ndarray, shape (K, M)
+        Ranges in m.
+    tracks : sequence of dict
+        As `managed_tracks` returns them.
+    truth : ndarray, shape (K,)
+        True range in m.
+    gap : tuple of float
+        Between these times nothing is seen, in s.
+    alternative : ndarray, shape (K,)
+        Ranges of the filter with association by probability, in m.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.3) as figure:
+        left, right = figure.subplots(1, 2, sharey=True)
+        for ax in (left, right):
+            ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
+            ax.plot(np.repeat(time, detections.shape[1]), detections.ravel(), "o", mfc="none",
+                    mec=MEASURED, ms=4, label="detections")  # fmt: skip
+            ax.plot(time, truth, color=TRUTH, ls="--", label="true")
+            ax.set(xlabel="time in s", ylim=(0.5, 6.5))
+        for i, (track, color) in enumerate(
+            zip(tracks, (OURS, ORANGE, SENSOR, PINK) * len(tracks), strict=False)
+        ):
+            left.plot(time[track["scan"]], track["x"][:, 0], color=color, marker=".", ms=4,
+                      label="confirmed tracks" if i == 0 else None)  # fmt: skip
+        right.plot(time, alternative, color=OURS, marker=".", ms=4, label="PDA")
+        left.set(title=f"{LABEL}: managed tracks", ylabel="range in m")
+        right.set_title(f"{LABEL}: one track, PDA")
+        for ax in (left, right):
+            ax.legend(loc="lower left", fontsize=8.5)
+        return figure

@@ -1,0 +1,150 @@
+"""Polar measurements, clutter, maneuvers and crossings: what other estimators make of them."""
+
+import numpy as np
+
+from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, styled
+
+KMH = 3.6  # km/h for each m/s
+
+
+def side_by_side(time, truth, tracks, limits=None):
+    """Draw the path and the speed along x, as several filters see them.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    truth : ndarray, shape (K, 4)
+        True states.
+    tracks : dict of str to ndarray, shape (runs, K, 4)
+        Estimates of each filter; some runs are drawn.
+    limits : tuple of float, optional
+        Limits of the y axis of the path in m.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.2) as figure:
+        left, right = figure.subplots(1, 2)
+        for (label, x), color in zip(tracks.items(), (OURS, PUBLISHED, ORANGE), strict=False):
+            for i, one in enumerate(x[:10]):
+                name = label if i == 0 else None
+                left.plot(one[:, 0], one[:, 2], color=color, lw=0.7, alpha=0.7, label=name)
+                right.plot(time, KMH * one[:, 1], color=color, lw=0.7, alpha=0.7, label=name)
+        left.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", label="truth")
+        right.plot(time, KMH * truth[:, 1], color=TRUTH, ls="--", label="truth")
+        left.set(xlabel="x in m", ylabel="y in m")
+        if limits is not None:
+            left.set_ylim(*limits)
+        right.set(xlabel="time in s", ylabel="$v_x$ in km/h")
+        left.legend(loc="best")
+        return figure
+
+
+def hole(time, rates, v_min, deviations):
+    """Draw the range rates that a clutter rule looks at, and what its hole does to a track.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    rates : dict of str to ndarray, shape (K,)
+        Range rate of each path in m/s.
+    v_min : float
+        Range rate below which a detection is deleted, in m/s.
+    deviations : dict of str to ndarray, shape (K,)
+        For each way to use the rule, the root mean square position error in m.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.2) as figure:
+        left, right = figure.subplots(1, 2)
+        left.axhspan(-v_min, v_min, color=BOUND, alpha=0.3, lw=0, label="deleted")
+        for (label, rate), (color, ls) in zip(rates.items(), VARIANTS, strict=False):
+            left.plot(time, rate, color=color, ls=ls, label=label)
+        left.set(xlabel="time in s", ylabel="range rate in m/s")
+        left.legend(loc="best")
+        for (label, error), (color, ls) in zip(deviations.items(), VARIANTS, strict=False):
+            right.plot(time[1:], error[1:], color=color, ls=ls, label=label)
+        right.set(xlabel="time in s", ylabel="position error in m, rms", yscale="log")
+        right.legend(loc="best")
+        return figure
+
+
+def over_time(time, errors, shaded, ylabel, mode=None):
+    """Draw the root mean square error of several estimators over time.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    errors : dict of str to ndarray, shape (K,)
+        Error of each estimator.
+    shaded : ndarray of bool, shape (K,)
+        When the target turns.
+    ylabel : str
+        Name and unit of the error.
+    mode : ndarray, shape (K,), optional
+        Probability of the agile model, drawn below.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows = 1 if mode is None else 2
+    ratios = [1] if mode is None else [3, 1]
+    with styled(7.0, 3.0 + 1.2 * (rows - 1)) as figure:
+        axes = figure.subplots(rows, 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0]
+        for ax in axes:
+            if shaded.any():
+                ax.axvspan(*time[shaded][[0, -1]], color=BOUND, alpha=0.2, lw=0)
+        for (label, error), (color, ls) in zip(errors.items(), VARIANTS, strict=False):
+            axes[0].plot(time, error, color=color, ls=ls, label=label)
+        axes[0].set(ylabel=ylabel, yscale="log")
+        axes[0].legend(loc="upper left", ncols=2, fontsize=8.5)
+        if mode is not None:
+            axes[1].plot(time, mode, color=OURS)
+            axes[1].set(ylabel="agile model", ylim=(0, 1))
+        axes[-1].set_xlabel("time in s")
+        return figure
+
+
+def crossings(truth, estimates, shares, angles):
+    """Draw two who cross, and how often their tracks come out wrong.
+
+    Parameters
+    ----------
+    truth : ndarray, shape (2, K, 4)
+        True states.
+    estimates : ndarray, shape (2, K, 4)
+        Estimates of one run.
+    shares : dict of str to list of Estimate
+        For each label, the share of the runs at each angle.
+    angles : sequence of float
+        In degrees.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.2) as figure:
+        left, right = figure.subplots(1, 2)
+        for one, color in zip(estimates, (OURS, PUBLISHED), strict=True):
+            left.plot(one[:, 0], one[:, 2], color=color, lw=1.3)
+        for one in truth:
+            left.plot(one[:, 0], one[:, 2], color=TRUTH, ls="--", lw=1)
+        left.set(xlabel="x in m", ylabel="y in m", title="one run, Hungarian")
+        for (label, share), (color, ls) in zip(shares.items(), VARIANTS, strict=False):
+            middle = np.array([one.value for one in share])
+            ends = np.array([[one.value - one.low, one.high - one.value] for one in share]).T
+            right.errorbar(
+                angles, middle, yerr=ends, color=color, ls=ls, marker="o", ms=3.5, capsize=3,
+                label=label,
+            )  # fmt: skip
+        right.set(xlabel="angle between the paths in degrees", ylabel="share of the runs")
+        right.set_ylim(-0.03, 1.03)
+        right.legend(loc="upper right")
+        return figure

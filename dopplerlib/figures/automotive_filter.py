@@ -1,0 +1,155 @@
+"""The linear filter of an automotive target: its tracks, its lag, and where its claims hold."""
+
+import numpy as np
+
+from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, styled
+
+KMH = 3.6  # km/h for each m/s
+SETTINGS = {
+    "sigma_p": r"position noise $\sigma_p$ in m",
+    "sigma_v": r"velocity noise $\sigma_v$ in m/s",
+    "w": "velocity step $w$ of the filter in m/s",
+}
+
+
+def three_panels(time, runs, run=0):
+    """Draw position and both speeds as in Figs 7 to 11: measurements, truth, estimate.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    runs : Runs
+        From `track`; one of the runs is drawn, and the range of all for the speeds.
+    run : int
+        Which run.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    truth, z, x = runs.path.truth, runs.z[run], runs.x[run]
+    with styled(7.0, 2.7) as figure:
+        axes = figure.subplots(1, 3)
+        for ax, part in zip(axes, ((0, 2), (1,), (3,)), strict=True):
+            if len(part) == 2:
+                lines = [(one[:, 0], one[:, 2]) for one in (z, truth, x)]
+                ax.set(xlabel="x in m", ylabel="y in m", title="a")
+                ax.margins(x=0.25)
+            else:
+                (i,) = part
+                lines = [(time, KMH * one[:, i]) for one in (z, truth, x)]
+                band = KMH * np.quantile(runs.x[:, 1:, i], [0.025, 0.975], axis=0)
+                ax.fill_between(time[1:], *band, color=OURS, alpha=0.25, lw=0)
+                name = {1: "$v_x$", 3: "$v_y$"}[i]
+                ax.set(xlabel="time in s", ylabel=f"{name} in km/h", title={1: "b", 3: "c"}[i])
+                middle = (KMH * truth[:, i].max() + KMH * truth[:, i].min()) / 2
+                half = max(5, 0.8 * KMH * np.ptp(truth[:, i]))
+                ax.set_ylim(middle - half, middle + half)
+            ax.plot(*lines[0], "x", color=BOUND, ms=2.5, mew=0.5, alpha=0.6, label="measured")
+            ax.plot(*lines[2], color=OURS, lw=1.4, label="estimate")
+            ax.plot(*lines[1], color=TRUTH, ls="--", lw=1.2, label="truth")
+        axes[1].legend(loc="upper left", fontsize=8, framealpha=0.9, frameon=True)
+        return figure
+
+
+def claim_map(rows, columns, shares, settings):
+    """Draw in how many runs claims hold, over two settings.
+
+    Parameters
+    ----------
+    rows, columns : tuple (str, sequence of float)
+        Name and values of a setting, as `regions.claim_map` takes them.
+    shares : dict of str to ndarray, shape (rows, columns)
+        Share of the runs for each claim.
+    settings : Settings
+        Our choice, to be marked.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    (row, heights), (column, widths) = rows, columns
+    x, y = widths.index(getattr(settings, column)), heights.index(getattr(settings, row))
+    with styled(7.0, 5.2) as figure:
+        axes = figure.subplots(2, 2, sharex=True, sharey=True)
+        for ax, (title, share) in zip(axes.ravel(), shares.items(), strict=True):
+            ax.imshow(share, origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=1)
+            for (i, j), value in np.ndenumerate(share):
+                color = "black" if value > 0.6 else "white"
+                ax.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=color, size=8)
+            ax.plot(x, y, "s", mfc="none", mec=PUBLISHED, ms=20, mew=2)
+            ax.grid(False)
+            ax.set_xticks(range(len(widths)), [f"{one:g}" for one in widths])
+            ax.set_yticks(range(len(heights)), [f"{one:g}" for one in heights])
+            ax.set_title(title)
+        for ax in axes[-1]:
+            ax.set_xlabel(SETTINGS[column])
+        for ax in axes[:, 0]:
+            ax.set_ylabel(SETTINGS[row])
+        return figure
+
+
+def lags(w, predicted, noise, measured):
+    """Draw what is left of an acceleration and of the noise, over the agility of the filter.
+
+    Parameters
+    ----------
+    w : ndarray, shape (M,)
+        Velocity steps of the filter in m/s.
+    predicted : ndarray, shape (M, 2)
+        Predicted lag of position in m and speed in m/s.
+    noise : ndarray, shape (M, 2)
+        Predicted deviation by noise.
+    measured : dict of float to tuple of two Estimate
+        For some w, the mean error of position and speed in many runs.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.2) as figure:
+        for i, ax in enumerate(figure.subplots(1, 2)):
+            ax.plot(w, predicted[:, i], color=OURS, label="lag, predicted")
+            ax.plot(w, noise[:, i], color=ORANGE, ls="--", label="noise, predicted")
+            both = np.hypot(predicted, noise)[:, i]
+            ax.plot(w, both, color=BOUND, ls=":", label="both")
+            points = [pair[i] for pair in measured.values()]
+            middle = np.array([one.value for one in points])
+            ends = np.array([[one.value - one.low, one.high - one.value] for one in points]).T
+            ax.errorbar(
+                list(measured), middle, yerr=ends, fmt="o", color=PUBLISHED, ms=4, capsize=3,
+                label="mean error of the runs",
+            )  # fmt: skip
+            ax.set(xscale="log", yscale="log", xlabel="velocity step $w$ in m/s")
+            ax.set_ylabel(("position in m", "speed in m/s")[i])
+            ax.set_ylim(0.004, None)
+        ax.legend(loc="lower left", fontsize=8.5)
+        return figure
+
+
+def nis_and_nees(time, averages, intervals):
+    """Draw the average NIS and NEES of several paths.
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    averages : dict of str to tuple of two ndarray, shape (K,)
+        For each path, averages over the runs of NIS and NEES.
+    intervals : tuple of two pairs of float
+        Where the averages of a consistent filter lie.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.2) as figure:
+        axes = figure.subplots(1, 2, sharey=True)
+        for i, (ax, name) in enumerate(zip(axes, ("NIS", "NEES"), strict=True)):
+            ax.axhspan(*intervals[i], color=BOUND, alpha=0.4, lw=0, label="consistent")
+            for (label, pair), (color, ls) in zip(averages.items(), VARIANTS, strict=False):
+                ax.plot(time, pair[i], color=color, ls=ls, lw=1.1, label=label)
+            ax.set(xlabel="time in s", ylabel=f"average {name}", yscale="log")
+        axes[0].legend(loc="upper right")
+        return figure

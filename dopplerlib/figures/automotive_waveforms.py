@@ -1,0 +1,164 @@
+"""What an automotive radar sends, and what comes back: the pictures of its waveforms."""
+
+import numpy as np
+
+from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, TRUTH, styled
+
+
+def sketches():
+    """Draw frequency over time of the six waveforms.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 4.4) as figure:
+        axes = figure.subplots(2, 3, sharex=True, sharey=True)
+        pulse, lfm, fsk, slopes, mfsk, rapid = axes.ravel()
+        for start in np.arange(0.02, 1, 0.25):
+            pulse.plot([start, start + 0.04], [0.5, 0.5], color=OURS, lw=5, solid_capstyle="butt")
+        lfm.plot([0, 0.5, 1], [0, 1, 0], color=OURS)
+        lfm.plot([0.06, 0.56, 1.06], [0.06, 1.06, 0.06], color=BOUND, ls="--")
+        for n in range(10):
+            ends = [n / 10, (n + 1) / 10]
+            fsk.plot(ends, [0.35 + 0.3 * (n % 2)] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
+        slopes.plot([0, 0.25, 0.5, 0.75, 1], [0, 1, 0, 0.6, 0], color=OURS)
+        for n in range(20):
+            ends = [n / 20, (n + 1) / 20]
+            height = (n // 2) / 11 + 0.12 * (n % 2)
+            mfsk.plot(ends, [height] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
+        for n in range(8):
+            rapid.plot([n / 8, (n + 1) / 8], [0, 1], color=OURS)
+        titles = (
+            "pulses", "chirps (LFM)", "two tones (FSK)",
+            "several slopes", "MFSK", "rapid chirps",
+        )  # fmt: skip
+        for ax, title in zip(axes.ravel(), titles, strict=True):
+            ax.set(title=title, xlim=(0, 1), ylim=(-0.08, 1.15), xticks=[], yticks=[])
+        figure.supxlabel("time")
+        figure.supylabel("frequency")
+        return figure
+
+
+def pulses(distance, signal, v, doppler):
+    """Draw the echoes of one pulse, and the Doppler spectrum of the samples at each echo.
+
+    Parameters
+    ----------
+    distance : ndarray, shape (samples,)
+        Range in m.
+    signal : ndarray of complex, shape (samples,)
+        Echoes of one pulse.
+    v : ndarray, shape (pulses,)
+        Range rates in m/s, in rising order.
+    doppler : dict of str to ndarray, shape (pulses,)
+        For each label the power in dB.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 2.8) as figure:
+        left, right = figure.subplots(1, 2)
+        left.plot(distance, np.abs(signal), color=OURS, lw=1)
+        left.set(xlabel="delay as range in m", ylabel="amplitude of one pulse")
+        styles = ((OURS, "-"), (PUBLISHED, "--"), (ORANGE, "-."))
+        for (label, power), (color, ls) in zip(doppler.items(), styles, strict=False):
+            right.plot(v, power, color=color, ls=ls, label=label)
+        right.set(xlabel="range rate in m/s", ylabel="dB", ylim=(-60, 22))
+        right.legend(loc="upper center", ncols=2)
+        return figure
+
+
+def ghosts(cases, reach):
+    """Draw the lines that the tones of chirps leave in the plane of range and speed.
+
+    Parameters
+    ----------
+    cases : dict of str to tuple (relations, frequencies, found, targets)
+        For each title: rows of `chirp_relation`, tones of each chirp in Hz, and (pairs, 2) found
+        and (targets, 2) true ranges in m and range rates in m/s.
+    reach : tuple of float
+        Limits of the range axis in m.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 4.0) as figure:
+        axes = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
+        colors = ((OURS, "-"), (ORANGE, "--"), (PINK, "-."), (BOUND, ":"))
+        for ax, (title, case) in zip(axes, cases.items(), strict=True):
+            relations, frequencies, found, targets = case
+            r = np.array(reach)
+            for (a, b), tones, (color, ls) in zip(relations, frequencies, colors, strict=False):
+                for i, tone in enumerate(tones):
+                    name = f"chirp of {a * 149_896_229.0 / 1e9:+.1f} GHz/s" if i == 0 else None
+                    ax.plot(r, (tone - a * r) / b, color=color, ls=ls, lw=1.1, label=name)
+            ax.plot(*np.transpose(targets), "o", mfc="none", mec=TRUTH, ms=11, label="target")
+            ax.plot(*np.transpose(found), "x", color=PUBLISHED, mew=2, label="accepted")
+            ax.set(title=title, xlabel="range in m", xlim=reach, ylim=(-16, 16))
+        axes[0].set_ylabel("range rate in m/s")
+        handles, labels = axes[-1].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3)
+        return figure
+
+
+def solved(cases, targets):
+    """Draw solutions of the MFSK system for many records, beside the targets.
+
+    Parameters
+    ----------
+    cases : dict of str to ndarray, shape (..., 2)
+        Ranges in m and range rates in m/s for each title.
+    targets : dict of str to ndarray, shape (targets, 2)
+        The true ones.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.0) as figure:
+        axes = figure.subplots(1, len(cases), squeeze=False)[0]
+        for ax, (title, found) in zip(axes, cases.items(), strict=True):
+            ax.plot(*found.reshape(-1, 2).T, ".", color=OURS, ms=3, alpha=0.6, label="solved")
+            ax.plot(*targets[title].T, "o", mfc="none", mec=TRUTH, ms=11, label="target")
+            ax.set(title=title, xlabel="range in m")
+        axes[0].set_ylabel("range rate in m/s")
+        axes[0].legend(loc="upper left")
+        return figure
+
+
+def maps(cases, floor=-45.0):
+    """Draw range-Doppler maps.
+
+    Parameters
+    ----------
+    cases : dict of str to tuple (r, v, power, labels)
+        For each title what `range_doppler_map` returns, and {text: (r, v)} to be written into it.
+    floor : float
+        Lowest power of the colors in dB.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.6) as figure:
+        axes = figure.subplots(1, len(cases), squeeze=False)[0]
+        for ax, (title, (r, v, power, labels)) in zip(axes, cases.items(), strict=True):
+            edges = r[0], r[-1], v[0], v[-1]
+            image = ax.imshow(
+                power, origin="lower", aspect="auto", extent=edges,
+                cmap="viridis", vmin=floor, vmax=0, interpolation="nearest",
+            )  # fmt: skip
+            for text, (x, y) in labels.items():
+                ax.annotate(
+                    text, (x, y), xytext=(0, 14 if y > 0 else -22), textcoords="offset points",
+                    color="white", ha="center", fontsize=9,
+                    arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.8},
+                )  # fmt: skip
+            ax.grid(False)
+            ax.set(title=title, xlabel="range in m")
+        axes[0].set_ylabel("range rate in m/s")
+        figure.colorbar(image, ax=axes, label="dB")
+        return figure

@@ -1,0 +1,94 @@
+"""Errors of the start against the noise: beside the dots of Fig 4, against the bound."""
+
+import numpy as np
+
+from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, styled
+
+_PARTS = (("position", "m"), ("velocity", "m/s"))
+
+
+def errors_by_noise(ours, published=None):
+    """Return mean errors against the variance of the noise, as in Fig 4 but on two log axes.
+
+    Parameters
+    ----------
+    ours : Figure4
+        Drawn as a band from the least to the largest sequence, and their mean.
+    published : PublishedFigure4, optional
+        Drawn as dots.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7, 3.3) as figure:
+        for ax, (part, unit) in zip(figure.subplots(1, 2), _PARTS, strict=True):
+            error = getattr(ours, part)
+            ax.fill_between(ours.variance, error.min(axis=1), error.max(axis=1), color=OURS,
+                            alpha=0.3, lw=0, label="ours, all sequences")  # fmt: skip
+            ax.plot(ours.variance, error.mean(axis=1), color=OURS, label="ours, mean")
+            if published is not None:
+                dots = getattr(published, part)
+                x = np.repeat(published.variance, dots.shape[1])
+                ax.plot(x, dots.ravel(), ".", color=PUBLISHED, ms=3, label="published")
+            bound = getattr(ours, f"bound_{part}").mean(axis=1)
+            ax.plot(ours.variance, bound, "--", color=BOUND, label="at the CRLB")
+            ax.set(xscale="log", yscale="log", xlabel="variance of the noise (Hz²)",
+                   ylabel=f"{part} error ({unit})")  # fmt: skip
+        figure.axes[0].legend(loc="upper left")
+        return figure
+
+
+def mean_and_median(results, bound, variance):
+    """Return errors divided by the deviation of the noise: flat where the problem is linear.
+
+    Parameters
+    ----------
+    results : dict of str to pair of ndarray, shape (L, D)
+        Position errors in m by label: the mean and the median over the grid.
+    bound : ndarray, shape (L,)
+        Mean position error at the bound, in m.
+    variance : ndarray, shape (L,)
+        Of the noise, in Hz^2.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    sigma_f = np.sqrt(variance)
+    with styled(7, 3.2) as figure:
+        ax = figure.subplots()
+        for (label, pair), color in zip(results.items(), (OURS, ORANGE, PINK), strict=False):
+            for values, style, name in zip(pair, ("-", ":"), ("mean", "median"), strict=True):
+                ax.plot(variance, values.mean(axis=1) / sigma_f, style, color=color, marker="o",
+                        ms=3, label=f"{label}: {name}")  # fmt: skip
+        ax.plot(variance, bound / sigma_f, "--", color=BOUND, label="at the CRLB, the first")
+        ax.set(xscale="log", xlabel="variance of the noise (Hz²)",
+               ylabel="position error / $\\sigma_f$ (m/Hz)")  # fmt: skip
+        ax.set_ylim(bottom=0)
+        figure.legend(loc="outside right upper")
+        return figure
+
+
+def sequences(sets):
+    """Return what each sequence keeps: its mean error over the levels, position against velocity.
+
+    Parameters
+    ----------
+    sets : dict of str to pair of ndarray, shape (D,)
+        By label: position errors in m/Hz and velocity errors in (m/s)/Hz, both divided by the
+        deviation of the noise and averaged over levels. The first is the published one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    looks = ((PUBLISHED, "o"), (OURS, "^"), (ORANGE, "s"), (PINK, "x"), (BOUND, "+"))
+    with styled(7, 3.6) as figure:
+        ax = figure.subplots()
+        for (label, pair), (color, marker) in zip(sets.items(), looks, strict=False):
+            ax.plot(*pair, marker, color=color, ms=5, label=label)
+        ax.set(xlabel="position error / $\\sigma_f$ (m/Hz)",
+               ylabel="velocity error / $\\sigma_f$ (m/s/Hz)")  # fmt: skip
+        figure.legend(loc="outside right upper")
+        return figure

@@ -1,0 +1,76 @@
+"""Evidence on the signal chain: a tone in noise, and how well its frequency can be told."""
+
+import numpy as np
+
+from ...evaluation.intervals import mean_interval, share_interval
+from ...evaluation.verdicts import Readings
+from ...signal.frequency import ml_frequency
+from ...signal.interpolation import peak_bin
+from ...signal.laws import (
+    crlb_frequency_std,
+    integrated_snr_for_std,
+    overlap_correlation,
+    window_for_std,
+)
+from ...signal.synthesis import tone
+from .published import scenario
+
+_RUNS = 4000
+_FS = 10e3  # Hz; the paper prints none. Ratios to the bound do not depend on it.
+_SNR_DB = 0.0  # where the paper says that the bound begins to be attained
+
+
+def signal_evidence(rng):
+    """Return evidence by the id of the claim, see `evidence` in the module ``claims``."""
+    s = scenario()
+    snr = 10 ** (_SNR_DB / 10)
+    errors = {
+        f"{n} samples, {name}": (_errors(estimator, n, child), crlb_frequency_std(snr, n, _FS))
+        for (n, name, estimator), child in zip(
+            (
+                (10, "maximum of the periodogram", ml_frequency),
+                (100, "maximum of the periodogram", ml_frequency),
+                (1000, "maximum of the periodogram", ml_frequency),
+                (100, "highest bin", peak_bin),
+            ),
+            rng.spawn(4),
+            strict=True,
+        )
+    }
+    normal = errors["100 samples, maximum of the periodogram"]
+    rates = (10e3, 100e3, 1e6)
+    needed = [integrated_snr_for_std(s.sigma_f, s.T) / (rate * s.T) for rate in rates]
+    # Windows so long that the noise is as small as Section 4 sets it, every millisecond.
+    long = [s.T / window_for_std(s.sigma_f, snr * rate) for rate in rates]
+    return {
+        "signal-bound": Readings(
+            {name: mean_interval((e / bound) ** 2) for name, (e, bound) in errors.items()}
+        ),
+        "signal-normal": share_interval(np.abs(normal[0]) < 1.96 * normal[1]),
+        "signal-variance": Readings(
+            {
+                f"{1e3 * window:.0f} ms": float(
+                    crlb_frequency_std(snr, round(window * _FS), _FS) ** 2
+                )
+                for window in (0.001, 0.01, 0.1)
+            }
+        ),
+        "signal-short": Readings(
+            {
+                f"{rate / 1e3:.0f} kHz": float(10 * np.log10(v))
+                for rate, v in zip(rates, needed, strict=True)
+            }
+        ),
+        "signal-white": Readings(
+            {
+                f"{r / 1e3:.0f} kHz": float(overlap_correlation(v))
+                for r, v in zip(rates, long, strict=True)
+            }
+        ),
+    }
+
+
+def _errors(estimator, n, rng):
+    """Return errors in Hz, of tones at random places of the middle half of the spectrum."""
+    f = rng.uniform(-_FS / 4, _FS / 4, _RUNS)
+    return estimator(tone(f, _FS, n, _SNR_DB, rng=rng), _FS) - f

@@ -1,0 +1,265 @@
+"""Which reading of Section 4 gives runs like the one that Fig 6 shows.
+
+What the paper leaves open is drawn at random for each run of ours. All runs are described by the
+same few numbers as the published one, and the runs nearest to it are asked what they were made of.
+"""
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.extended_kalman import ekf
+from ...evaluation.consistency import chi2_interval
+from ...evaluation.intervals import share_interval
+from ...model.motion import constant_velocity
+from ...model.simulation import simulate
+from .published import published_figure6, scenario, table2
+
+# Samples over which errors are averaged: in all of them the drawn ones are known.
+WINDOWS = ((7, 14), (50, 150), (200, 300), (450, 550), (700, 800), (950, 1001))
+
+SUMMARIES = (
+    "average NIS", "spread of NIS", "share of NIS inside", "NIS, first ten", "NIS, memory",
+    "refused, too small", "refused, too large",
+    *(f"error of {axis}, {a} to {b} ms" for (a, b), axis in product(WINDOWS, "xyz")),
+)  # fmt: skip
+
+OPTIONS = {
+    "start": ("of Table 2", "as drawn"),
+    "P0": ("0.01 I", "0.1 I", "1 I", "0.1 I, noise of 10 %", "0.1 I, noise of 20 %"),
+    "process noise": (
+        "common, 0.4 m/s²", "common, 0.04 m/s²", "common, 4 m/s²",
+        "independent, 0.4 m/s²", "independent, 0.04 m/s²",
+    ),
+    "noise at the start": ("not raised", "R x 10, 10 samples", "R x 10, 100 samples"),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Figure6Readings:
+    """Runs of many readings of the simulation example, described by a few numbers.
+
+    Attributes
+    ----------
+    option : dict of str to ndarray of int, shape (runs,)
+        For each question of `OPTIONS`, which of its answers a run was made with.
+    summary : ndarray, shape (runs, 25)
+        Numbers named in `SUMMARIES`; errors, averages and counts are logarithms.
+    published : ndarray, shape (25,)
+        The same of the published run.
+    """
+
+    option: dict
+    summary: np.ndarray
+    published: np.ndarray
+
+    def nearest(self, count, *, decorrelate=True, only=None):
+        """Return the numbers of the `count` runs nearest to the published one.
+
+        Every summary is first turned into a normal score, by its rank among all runs and the
+        published one: heavy tails and units do not matter.
+
+        Parameters
+        ----------
+        count : int
+            How many.
+        decorrelate : bool
+            Whether distance is that of Mahalanobis, in which numbers that say the same count once.
+        only : sequence of int, optional
+            Which summaries count; all if None.
+
+        Returns
+        -------
+        ndarray of int, shape (count,)
+            The nearest first.
+        """
+        from scipy.stats import norm, rankdata
+
+        columns = slice(None) if only is None else list(only)
+        values = np.vstack([self.published, self.summary])[:, columns]
+        score = norm.ppf((rankdata(values, axis=0) - 0.5) / len(values))
+        away = score[1:] - score[0]
+        if decorrelate:
+            # Summaries that are nearly one number are not told apart: a floor for eigenvalues.
+            size, axes = np.linalg.eigh(np.corrcoef(score[1:].T))
+            away = away @ axes / np.sqrt(np.maximum(size, 0.01))
+        return np.argsort(np.sum(away**2, axis=1))[:count]
+
+    def shares(self, count, **how):
+        """Return the share of every option among the nearest runs.
+
+        Parameters
+        ----------
+        count : int
+            Number of nearest runs.
+        **how
+            See `nearest`.
+
+        Returns
+        -------
+        dict of dict of Estimate
+            By question and answer. All answers to a question were equally frequent beforehand.
+        """
+        near = self.nearest(count, **how)
+        return {
+            question: {
+                answer: share_interval(self.option[question][near] == i)
+                for i, answer in enumerate(answers)
+            }
+            for question, answers in OPTIONS.items()
+        }
+
+
+def ruled_out(shares):
+    """Return the answers that another one beats by ten to one, on the whole of both intervals.
+
+    Parameters
+    ----------
+    shares : dict of dict of Estimate
+        From `Figure6Readings.shares`.
+
+    Returns
+    -------
+    set of tuple
+        Question and answer.
+    """
+    return {
+        (question, answer)
+        for question, answers in shares.items()
+        for answer, share in answers.items()
+        if 10 * share.high < max(other.low for other in answers.values())
+    }
+
+
+def figure6_readings(runs, *, rng):
+    """Run the simulation example with everything that the paper leaves open drawn at random.
+
+    The gate is the two-sided one, which the figure itself shows.
+
+    Parameters
+    ----------
+    runs : int
+        Number of runs, at least one for each mixture of process noise and noise at the start; it
+        is rounded down to a multiple of their number, 15.
+    rng : numpy.random.Generator
+        Source of the measurement noise and of the choices.
+
+    Returns
+    -------
+    Figure6Readings
+
+    Raises
+    ------
+    ValueError
+        If `runs` is smaller than 15 or not a whole number, or `rng` is not a generator.
+    """
+    _checks.generator("rng", rng)
+    groups = list(product(range(5), range(3)))
+    each = _checks.whole_number("runs", runs, least=len(groups)) // len(groups)
+    s, drawn = scenario(), published_figure6()
+    starts = np.stack([table2().x_ml, drawn.start])
+    F, _ = constant_velocity(s.T, s.sigma_p)
+    option = {question: [] for question in OPTIONS}
+    summary = []
+    for (noise, raised), child in zip(groups, rng.spawn(len(groups)), strict=True):
+        start, covariance = child.integers(2, size=each), child.integers(5, size=each)
+        before = np.linalg.solve(F, starts[start][..., None])[..., 0]
+        P0 = np.stack([_covariance(OPTIONS["P0"][c], child) for c in covariance])
+        kind, sigma_p = OPTIONS["process noise"][noise].removesuffix(" m/s²").split(", ")
+        truth, z = simulate(s, each, rng=child)
+        track = ekf(
+            z, s.array, before, P0, s.T, float(sigma_p), _deviations(raised), kind,
+            gate="two-sided", keep=(),
+        )  # fmt: skip
+        error = np.abs(track.x[..., :3] - truth[:, :3])
+        summary.append(figure6_summary(error, track.nis, ~track.updated))
+        for name, values in zip(OPTIONS, (start, covariance, noise, raised), strict=True):
+            option[name].append(np.broadcast_to(values, each))
+    published = figure6_summary(drawn.error, drawn.nis, drawn.skipped)
+    chosen = {name: np.concatenate(parts) for name, parts in option.items()}
+    return Figure6Readings(chosen, np.concatenate(summary), published)
+
+
+def figure6_summary(error, nis, skipped):
+    """Describe runs by the numbers named in `SUMMARIES`.
+
+    Parameters
+    ----------
+    error : ndarray, shape (..., 1001, 3)
+        Absolute position errors in m.
+    nis : ndarray, shape (..., 1001)
+        Normalized innovations squared.
+    skipped : ndarray of bool, shape (..., 1001)
+        Samples at which the state was only predicted.
+
+    Returns
+    -------
+    ndarray, shape (..., 25)
+    """
+    lower, upper = chi2_interval(6)
+    small = nis < 6
+    log = np.log10(nis) - np.log10(nis).mean(axis=-1, keepdims=True)
+    memory = (log[..., 1:] * log[..., :-1]).mean(axis=-1) / (log**2).mean(axis=-1)
+    numbers = [
+        np.log10(nis.mean(axis=-1)),
+        np.log10(nis.std(axis=-1)),
+        ((lower <= nis) & (nis <= upper)).mean(axis=-1),
+        np.log10(nis[..., :10].mean(axis=-1)),
+        memory,
+        np.log1p((skipped & small).sum(axis=-1)),
+        np.log1p((skipped & ~small).sum(axis=-1)),
+    ]
+    for first, last in WINDOWS:
+        square = np.mean(error[..., first:last, :] ** 2, axis=-2)
+        numbers += list(np.moveaxis(np.log10(square) / 2, -1, 0))
+    return np.stack(numbers, axis=-1)
+
+
+def still_counts(error, nis):
+    """Count the samples that stand still, by the error curves alone, at small and at large NIS.
+
+    A sample stands still if no error changes by more than a quarter of what is usual in its block
+    of 25 samples. The first block is left out: there the drawn errors are not all known.
+
+    Parameters
+    ----------
+    error, nis
+        See `figure6_summary`.
+
+    Returns
+    -------
+    low, high : ndarray, shape (...)
+        Number of samples that stand still with a NIS below and above the 95 % interval.
+    """
+    lower, upper = chi2_interval(6)
+    change = np.abs(np.diff(error, axis=-2))[..., 25:, :]
+    blocks = change.reshape(*change.shape[:-2], -1, 25, 3)
+    ratio = blocks / np.median(blocks, axis=-2, keepdims=True)
+    still = (ratio.max(axis=-1) < 0.25).reshape(change.shape[:-1])
+    nis = nis[..., 26:]
+    return (still & (nis < lower)).sum(axis=-1), (still & (nis > upper)).sum(axis=-1)
+
+
+def _covariance(name, rng):
+    """Return a P0 by its name, with noise on its off-diagonal elements if that is part of it."""
+    scale = float(name.split(" ")[0])
+    P0 = scale * np.eye(6)
+    if "noise" not in name:
+        return P0
+    deviation = scale * float(name.split(" ")[-2]) / 100
+    while True:
+        noise = np.triu(deviation * rng.standard_normal((6, 6)), 1)
+        P = P0 + noise + noise.T
+        # Barely positive is no covariance that anybody would start with.
+        if np.linalg.eigvalsh(P)[0] > 0.01 * scale:
+            return P
+
+
+def _deviations(raised):
+    """Return the standard deviation that the filter believes, shape (1001, 1)."""
+    s = scenario()
+    deviation = np.full((s.samples, 1), s.sigma_f)
+    deviation[: (0, 10, 100)[raised]] *= np.sqrt(10)
+    return deviation

@@ -1,0 +1,273 @@
+"""How the error of the start grows with the noise (Fig 4), under any reading of the text."""
+
+import sys
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.maximum_likelihood import ml_start
+from ...evaluation.bounds import crlb
+from ...model.doppler import doppler_shift
+from ...model.radar_array import RadarArray
+
+# Variances of the 31 levels of the figure, in Hz^2.
+NOISE_LEVELS = 10.0 ** (-4 + 4 * np.arange(31) / 30)
+# Section 3.4: five sensors, 0.4 m, ten samples in 10 ms.
+SENSORS, LENGTH, SAMPLES, T = 5, 0.4, 10, 0.001
+DEPTH, WIDTH = (0.3, 1.0), (-0.5, 0.5)
+# What the text says that the averaged errors stay below, in m and m/s.
+ERROR_LIMITS = (0.3, 0.2)
+
+# Where the search may look: distance from the array, along it, and the two velocities.
+# The text says that there are bounds, not which. Its line of sensors is blind for the side on
+# which the target is, so every box ends in front of it.
+BOXES = {
+    "wide": ((0.01, -2, -2, -2), (2, 2, 2, 2)),
+    "approaching": ((0.01, -2, -2, -2), (2, 2, 0, 2)),
+    "region": ((0.3, -0.5, -2, -2), (1, 0.5, 2, 2)),
+}
+_PLANE = [True, True, False, True, True, False]
+
+
+@dataclass(frozen=True)
+class SweepReading:
+    """What the text leaves open about Fig 4, decided in one way.
+
+    Attributes
+    ----------
+    velocity : {"center", "direction", "disc", "square"}
+        How a velocity is drawn. "center": towards the middle of the array, at a uniform speed.
+        "direction": any direction with v_x < 0, at a uniform speed. "disc" and "square": uniform
+        in the half with v_x < 0 of a disc of radius `speed[1]`, or of a square of twice that side.
+    speed : pair of float
+        Least and largest speed in m/s; the least is for "center" and "direction" only.
+    shared : bool
+        Whether one draw serves all grid points (of "center": one speed), or each has its own.
+    likelihood : {"moving", "static"}
+        See `ml_start`; the simulated target does what the likelihood says.
+    spacing : float
+        Of the grid, in m. The text says 0.05.
+    box : {"wide", "approaching", "region"}
+        See `BOXES`.
+    axis : {"y", "x"}
+        Along which the array stands. The text gives its length only.
+    """
+
+    velocity: str = "direction"
+    speed: tuple = (0.75, 0.75)
+    shared: bool = True
+    likelihood: str = "moving"
+    spacing: float = 0.05
+    box: str = "wide"
+    axis: str = "y"
+
+
+@dataclass(frozen=True)
+class Figure4:
+    """Errors of the start, averaged over the grid: one value for each level and each draw.
+
+    Attributes
+    ----------
+    variance : ndarray, shape (L,)
+        Of the noise, in Hz^2.
+    position, velocity : ndarray, shape (L, D)
+        Mean size of the errors in m and m/s.
+    median_position, median_velocity : ndarray, shape (L, D)
+        Medians over the grid.
+    bound_position, bound_velocity : ndarray, shape (L, D)
+        Mean sizes of the errors that an unbiased and normally distributed estimate would have at
+        the Cramér-Rao bound, averaged over the grid.
+    """
+
+    variance: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    median_position: np.ndarray
+    median_velocity: np.ndarray
+    bound_position: np.ndarray
+    bound_velocity: np.ndarray
+
+
+def figure4(
+    levels=None, draws=20, *, rng, reading=None, bound=True, progress=False, workers=None
+):  # fmt: skip
+    """Run the study of Fig 4.
+
+    Parameters
+    ----------
+    levels : sequence of int, optional
+        Numbers of the noise levels, 0 to 30; all if None.
+    draws : int
+        Number of velocity draws: 20 in the figure, eleven in the text.
+    rng : numpy.random.Generator
+        Source of velocities and noise. Fewer levels or draws give the same values of those asked
+        for.
+    reading : SweepReading, optional
+        What the text leaves open; `SweepReading()` if None.
+    bound : bool
+        Whether the bounds are wanted; else they are NaN.
+    progress : bool
+        Whether to show a bar on standard error.
+    workers : int, optional
+        See `ml_start`. The result does not depend on it.
+
+    Returns
+    -------
+    Figure4
+
+    Raises
+    ------
+    ValueError
+        If a level is not one of 0 to 30, `draws` is not a positive whole number, or the reading
+        names something unknown.
+
+    Examples
+    --------
+    >>> result = figure4([0, 30], draws=2, rng=np.random.default_rng(1))
+    >>> result.position.shape, bool((result.position[1] > 10 * result.position[0]).all())
+    ((2, 2), True)
+    """
+    reading = SweepReading() if reading is None else reading
+    levels = list(range(len(NOISE_LEVELS)) if levels is None else levels)
+    if not all(isinstance(k, int | np.integer) and 0 <= k < len(NOISE_LEVELS) for k in levels):
+        raise ValueError(f"levels must be whole numbers from 0 to 30, got {levels}")
+    draws = _checks.whole_number("draws", draws)
+    _checks.generator("rng", rng)
+    _checks.one_of("reading.box", reading.box, tuple(BOXES))
+    _checks.one_of("reading.axis", reading.axis, ("x", "y"))
+
+    array = RadarArray.linear(SENSORS, LENGTH, axis=reading.axis)
+    streams = [child.spawn(1 + len(NOISE_LEVELS)) for child in rng.spawn(draws)]
+    x = np.stack([_states(reading, own[0]) for own in streams])
+    path = np.repeat(x[..., None, :], SAMPLES, axis=-2)
+    if reading.likelihood == "moving":
+        path[..., :3] += T * np.arange(SAMPLES)[:, None] * path[..., 3:]
+    clean = doppler_shift(path, array)
+    box = _box(reading)
+    errors = []
+    for k in _bar(levels, "noise level", progress):
+        noise = np.stack([own[1 + k].standard_normal(clean.shape[1:]) for own in streams])
+        sigma_f = np.sqrt(NOISE_LEVELS[k])
+        z = clean + sigma_f * noise
+        start = ml_start(z, array, sigma_f, T, box, reading.likelihood, workers=workers)
+        errors.append(_sizes(start.x - x))
+    errors = np.array(errors)  # levels, two parts, draws, grid points
+    mean, median = errors.mean(axis=-1), np.median(errors, axis=-1)
+    if bound:
+        P = crlb(x, array, 1.0, SAMPLES, T, reading.likelihood, free=_PLANE)
+        unit = np.stack([mean_norm(P[..., part, part]).mean(axis=-1) for part in _PARTS])
+    else:
+        unit = np.full((2, draws), np.nan)
+    bounds = np.sqrt(NOISE_LEVELS[levels])[:, None, None] * unit
+    parts = (values[:, i] for values in (mean, median, bounds) for i in (0, 1))
+    return Figure4(NOISE_LEVELS[levels], *parts)
+
+
+_PARTS = (np.s_[:2], np.s_[3:5])
+
+
+def mean_norm(P):
+    """Return the mean length of a normally distributed vector in a plane.
+
+    Parameters
+    ----------
+    P : array_like, shape (..., 2, 2)
+        Covariance; the mean is zero.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    Notes
+    -----
+    ``sqrt(2 a / pi) E(1 - b / a)`` with the eigenvalues a >= b and the complete elliptic integral
+    of the second kind; sqrt(2 / pi) standard deviations on a line, sqrt(pi / 2) on a circle.
+
+    Examples
+    --------
+    >>> float(mean_norm(np.diag([1.0, 0.0])).round(4)), float(mean_norm(np.eye(2)).round(4))
+    (0.7979, 1.2533)
+    """
+    from scipy.special import ellipe  # here: it takes longer to load than all the rest
+
+    P = np.asarray(P, float)
+    middle = (P[..., 0, 0] + P[..., 1, 1]) / 2
+    half = np.hypot((P[..., 0, 0] - P[..., 1, 1]) / 2, P[..., 0, 1])
+    large = middle + half
+    return np.sqrt(2 * large / np.pi) * ellipe(np.minimum(1.0, 2 * half / large))
+
+
+def grid_points(spacing=0.05):
+    """Return the positions of the study.
+
+    Parameters
+    ----------
+    spacing : float
+        In m. The text says 0.05: 315 points.
+
+    Returns
+    -------
+    ndarray, shape (M, 2)
+        In m; x runs from 0.3 to 1, y from -0.5 to 0.5.
+    """
+    spacing = _checks.positive_number("spacing", spacing)
+    axes = [
+        low + spacing * np.arange(int((high - low) / spacing + 1e-9) + 1)
+        for low, high in (DEPTH, WIDTH)
+    ]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def _states(reading, rng):
+    """Return true states at the grid points, shape (M, 6), for one draw of velocities."""
+    points = grid_points(reading.spacing)
+    x = np.zeros((len(points), 6))
+    x[:, :2] = points
+    size = 1 if reading.shared else len(points)
+    low, high = reading.speed
+    kind = _checks.one_of("reading.velocity", reading.velocity, _KINDS)
+    if kind == "square":
+        x[:, 3] = -rng.uniform(0, high, size)
+        x[:, 4] = rng.uniform(-high, high, size)
+    else:
+        speed = high * np.sqrt(rng.random(size)) if kind == "disc" else rng.uniform(low, high, size)
+        if kind == "center":
+            direction = -points / np.linalg.norm(points, axis=-1, keepdims=True)
+        else:
+            angle = rng.uniform(-np.pi / 2, np.pi / 2, size)
+            direction = np.stack([-np.cos(angle), np.sin(angle)], axis=-1)
+        x[:, 3:5] = speed[:, None] * direction
+    if reading.axis == "x":
+        # The line is blind for the sign of y, as it is for that of x when it stands along y. What
+        # is straight ahead of it, at y = 0, it does not see at all.
+        x = x[np.abs(x[:, 1]) > 1e-9]
+        x[:, [1, 4]] *= np.where(x[:, 1] < 0, -1, 1)[:, None]
+    return x
+
+
+_KINDS = ("center", "direction", "disc", "square")
+
+
+def _box(reading):
+    """Return the bounds of the state; the first of the box is the distance from the array."""
+    order = [0, 1, 3, 4] if reading.axis == "y" else [1, 0, 4, 3]
+    box = np.zeros((2, 6))
+    box[:, order] = BOXES[reading.box]
+    return box
+
+
+def _sizes(error):
+    """Return the lengths of both parts of the error, stacked first."""
+    return np.stack([np.linalg.norm(error[..., part], axis=-1) for part in _PARTS])
+
+
+def _bar(items, label, wanted):
+    """Yield the items, with a bar on standard error if it is wanted."""
+    for done, item in enumerate(items):
+        if wanted:
+            sys.stderr.write(f"\r{label} {done + 1:2d} of {len(items)}")
+            sys.stderr.flush()
+        yield item
+    if wanted:
+        sys.stderr.write("\n")

@@ -1,0 +1,197 @@
+"""Which reading of Fig 4 do the published dots support?"""
+
+import json
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .noise_sweep import NOISE_LEVELS, Figure4, SweepReading
+from .published import DATA
+
+# The paper's own speeds: that of Table 2 (rounded), the unit, and that of Fig 3.
+_VELOCITIES = (
+    SweepReading("center", (0.5, 1.0)),
+    SweepReading("center", (0.5, 1.5)),
+    SweepReading("center", (0.0, 2.0)),
+    SweepReading("direction", (0.75, 0.75)),
+    SweepReading("direction", (1.0, 1.0)),
+    SweepReading("direction", (2.0, 2.0)),
+    SweepReading("disc", (0.0, 1.0)),
+    SweepReading("disc", (0.0, 2.0)),
+    SweepReading("square", (0.0, 1.0)),
+    SweepReading("square", (0.0, 2.0)),
+)
+# Every velocity with either likelihood, one draw for all points or one for each. Then, for some of
+# them, what else could be different: the grid of the text, other boxes, the array turned.
+SWEEP_READINGS = (
+    tuple(
+        replace(velocity, shared=shared, likelihood=likelihood, spacing=0.1)
+        for velocity in _VELOCITIES
+        for shared in (True, False)
+        for likelihood in ("moving", "static")
+    )
+    + tuple(
+        replace(velocity, likelihood=likelihood)
+        for velocity in (_VELOCITIES[1], _VELOCITIES[3])
+        for likelihood in ("moving", "static")
+    )
+    + tuple(
+        replace(velocity, shared=shared, likelihood=likelihood, spacing=0.1, box=box)
+        for velocity in (_VELOCITIES[1], _VELOCITIES[3], _VELOCITIES[8])
+        for shared in (True, False)
+        for likelihood in ("moving", "static")
+        for box in ("approaching", "region")
+    )
+    + tuple(
+        replace(velocity, spacing=0.1, axis="x") for velocity in (_VELOCITIES[1], _VELOCITIES[3])
+    )
+)
+# Levels at which readings are compared: below them the dots are a few steps of their grid.
+SCORED_LEVELS = (10, 14, 18, 22, 26, 30)
+# Markers of the figure stand on a grid of this many m or m/s.
+STEP = 0.00137
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Model of the dots: a sequence has a level of its own, and a scatter from dot to dot.
+
+    Everything is for logarithms; position first, velocity second.
+
+    Attributes
+    ----------
+    mean : ndarray, shape (L, 2)
+        At each noise level.
+    between : ndarray, shape (2, 2)
+        Covariance of what a sequence keeps over all levels. Unbiased, so not always positive.
+    within : ndarray, shape (2, 2)
+        Covariance of what changes from dot to dot.
+    """
+
+    mean: np.ndarray
+    between: np.ndarray
+    within: np.ndarray
+
+
+def dots_structure(position, velocity):
+    """Return the model of dots that are given.
+
+    Parameters
+    ----------
+    position, velocity : array_like, shape (L, D)
+        Mean errors in m and m/s: L levels of D sequences, both at least two.
+
+    Returns
+    -------
+    Structure
+
+    Examples
+    --------
+    Two sequences that differ by a constant factor and nothing else:
+
+    >>> dots = np.array([[1.0, 2.0], [3.0, 6.0], [5.0, 10.0]])
+    >>> result = dots_structure(dots, dots)
+    >>> bool(np.allclose(result.within, 0)), result.between.round(3).tolist()
+    (True, [[0.24, 0.24], [0.24, 0.24]])
+    """
+    dots = np.log(np.stack([position, velocity], axis=-1))
+    levels, draws = dots.shape[:2]
+    mean = dots.mean(axis=1)
+    rest = dots - mean[:, None]
+    kept = rest.mean(axis=0)
+    change = rest - kept
+    within = np.einsum("ldi,ldj->ij", change, change) / ((draws - 1) * (levels - 1))
+    between = kept.T @ kept / (draws - 1) - within / levels
+    return Structure(mean, between, within)
+
+
+def dots_log_likelihood(model, position, velocity):
+    """Return how likely dots are under a model, as a sum over independent sequences.
+
+    Parameters
+    ----------
+    model : Structure
+        From a simulation.
+    position, velocity : array_like, shape (L, D)
+        The dots, at the levels of the model.
+
+    Returns
+    -------
+    float
+        In nats. Only differences mean something.
+
+    Notes
+    -----
+    The logarithms of a sequence are taken as normally distributed, with the rounding of the
+    figure's markers added. A negative variance between sequences counts as zero.
+    """
+    dots = np.log(np.stack([position, velocity], axis=-1))
+    levels, draws = dots.shape[:2]
+    size, axes = np.linalg.eigh(model.between)
+    between = (axes * np.maximum(size, 0)) @ axes.T
+    S = np.kron(np.ones((levels, levels)), between) + np.kron(np.eye(levels), model.within)
+    S += np.diag(STEP**2 / 12 / np.exp(2 * model.mean.ravel()))
+    error = (dots - model.mean[:, None]).transpose(0, 2, 1).reshape(-1, draws)
+    square = np.sum(error * np.linalg.solve(S, error))
+    return float(-0.5 * (square + draws * np.linalg.slogdet(2 * np.pi * S)[1]))
+
+
+def figure4_score(figure, published, *, rng, resamples=200):
+    """Return how likely the published dots are under our simulation of a reading.
+
+    Parameters
+    ----------
+    figure : Figure4
+        Ours; many draws make the interval narrow.
+    published : PublishedFigure4
+        At least the levels of `figure`.
+    rng : numpy.random.Generator
+        Draws our sequences again, for the interval.
+    resamples : int
+        How often.
+
+    Returns
+    -------
+    score : float
+        Log-likelihood in nats; only differences between readings mean something.
+    low, high : float
+        Central 95 % of the score when our sequences are drawn again from themselves.
+    """
+    rows = [int(np.argmin(np.abs(NOISE_LEVELS - variance))) for variance in figure.variance]
+    dots = published.position[rows], published.velocity[rows]
+    draws = figure.position.shape[1]
+
+    def one(columns):
+        ours = dots_structure(figure.position[:, columns], figure.velocity[:, columns])
+        return dots_log_likelihood(ours, *dots)
+
+    again = [one(rng.integers(draws, size=draws)) for _ in range(resamples)]
+    return one(np.arange(draws)), *(float(q) for q in np.quantile(again, (0.025, 0.975)))
+
+
+def figure4_readings():
+    """Return every reading with its score, the most likely first, as `make figure4` left them.
+
+    Returns
+    -------
+    list of tuple
+        The reading, its score in nats, and the ends of its 95 % interval.
+    """
+    saved = json.loads((DATA / "ourfigure4_readings.json").read_text(encoding="utf-8"))
+    rows = []
+    for row in saved["readings"]:
+        values = tuple(row.pop(name) for name in ("score", "low", "high"))
+        rows.append((SweepReading(**row | {"speed": tuple(row["speed"])}), *values))
+    return sorted(rows, key=lambda row: -row[1])
+
+
+def saved_figure4():
+    """Return the study in full, as `make figure4` left it: 31 levels, 20 draws, 315 points.
+
+    Returns
+    -------
+    Figure4
+    """
+    table = np.genfromtxt(DATA / "ourfigure4.csv", delimiter=",", names=True)
+    parts = [table[name].reshape(len(NOISE_LEVELS), -1) for name in table.dtype.names[2:]]
+    return Figure4(NOISE_LEVELS, *parts)

@@ -1,0 +1,151 @@
+"""The figures of consistency show the data that they are given, with units on every axis."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.patches import Ellipse
+from numpy.testing import assert_allclose
+from scipy.stats import chi2
+
+from dopplerlib.figures import consistency as draw
+from dopplerlib.systems.mittermaier2016 import Consistency
+
+INTERVAL = (1.237, 14.449)
+RNG = np.random.default_rng(81)
+ETA = np.linspace(0, 20, 401)
+DENSITIES = {n: (ETA, chi2.pdf(ETA, n)) for n in (2, 6)}
+SUMS = {n: chi2.rvs(n, size=1000, random_state=RNG) for n in (2, 6)}
+ERRORS = {"a": RNG.normal(size=(50, 2)), "b": RNG.normal(size=(50, 2))}
+COVARIANCES = {"a": np.diag([0.01, 0.04]), "b": np.array([[0.05, 0.03], [0.03, 0.05]])}
+TIME = np.array([0.0, 0.001, 0.01, 0.1])
+VALUES = {"NIS": RNG.random(4), "NEES": RNG.random(4)}
+AVERAGES = {"NIS": 6 + RNG.normal(size=80) / 10, "NEES": 6 + RNG.normal(size=80)}
+INTERVALS = {"NIS": {"one": (5.8, 6.2)}, "NEES": {"one": (5.8, 6.2), "two": (4.0, 8.4)}}
+NEES, NIS = RNG.uniform(1, 100, (9, 4)), RNG.uniform(1, 10, (9, 4))
+RESULTS = {
+    label: Consistency(TIME, None, None, None, factor * NEES, NIS, None)
+    for label, factor in (("printed", 1), ("repaired", 0.1))
+}
+SPREAD, CLAIMED = np.array([3.0, 2, 1, 1]), {"x": np.ones(4), "y": np.full(4, 0.5)}
+
+
+@pytest.fixture(scope="module")
+def figures():
+    return {
+        "chi_square": draw.chi_square(DENSITIES, INTERVAL, SUMS, filled=6),
+        "clouds": draw.clouds(ERRORS, COVARIANCES, ("x", "y")),
+        "one_run": draw.one_run(TIME, VALUES, INTERVAL),
+        "averages_spread": draw.averages_spread(AVERAGES, INTERVALS),
+        "causes": draw.causes(RESULTS, INTERVAL, 5.35),
+        "claims": draw.claims(TIME + 0.001, SPREAD, CLAIMED),
+    }
+
+
+NAMES = ["chi_square", "clouds", "one_run", "averages_spread", "causes", "claims"]
+WITHOUT_UNIT = {
+    "sum of squares", "probability density", "NIS", "NEES", "NIS averaged over a run",
+    "NEES averaged over a run", "runs", "median NEES", "median NIS",
+}  # fmt: skip
+
+
+def lines(ax):
+    """Return {label: line} of the lines that have one."""
+    return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
+
+
+def test_every_figure_function_of_the_module_is_tested_here():
+    public = [
+        name
+        for name, value in vars(draw).items()
+        if getattr(value, "__module__", "") == draw.__name__ and not name.startswith("_")
+    ]
+    assert sorted(public) == sorted(NAMES)
+
+
+def test_no_figure_stays_with_pyplot(figures):
+    assert len(figures) == len(NAMES)
+    assert plt.get_fignums() == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_figure_fits_the_page_and_can_be_drawn(figures, name):
+    assert figures[name].get_figwidth() <= 7
+    figures[name].canvas.draw()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_axis_has_a_label_that_says_its_unit(figures, name):
+    for ax in figures[name].axes:
+        spec = ax.get_subplotspec()
+        labels = [ax.get_xlabel()] if spec.is_last_row() else []
+        if spec.is_first_col():
+            labels.append(ax.get_ylabel())
+        for label in labels:
+            assert label in WITHOUT_UNIT or label.endswith((" in m", " in s")), label
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_curve_is_in_a_legend(figures, name):
+    figure = figures[name]
+    legends = [*figure.legends, *(ax.get_legend() for ax in figure.axes if ax.get_legend())]
+    told = {text.get_text() for legend in legends for text in legend.get_texts()}
+    drawn = {label for ax in figure.axes for label in ax.get_legend_handles_labels()[1]}
+    assert drawn
+    assert drawn == told
+
+
+def test_the_densities_are_drawn_over_histograms_of_area_one_and_the_interval_is_filled(figures):
+    (ax,) = figures["chi_square"].axes
+    shown = lines(ax)
+    for n in (2, 6):
+        assert_allclose(shown[f"{n} degrees of freedom"].get_xydata().T, DENSITIES[n])
+    (filled,) = ax.collections
+    x = filled.get_paths()[0].vertices[:, 0]
+    assert INTERVAL[0] <= x.min() < INTERVAL[0] + 0.1
+    assert INTERVAL[1] - 0.1 < x.max() <= INTERVAL[1]
+    for patch, n in zip(ax.patches, (2, 6), strict=True):
+        height, edges, _ = patch.get_data()
+        assert_allclose(np.sum(height * np.diff(edges)), np.mean(SUMS[n] <= 20))
+
+
+def test_the_ellipse_holds_95_percent_of_a_normal_cloud(figures):
+    """Its points are at the distance, in deviations, at which chi-square of two dof has 0.95."""
+    for ax, label in zip(figures["clouds"].axes, ERRORS, strict=True):
+        assert_allclose(ax.lines[0].get_xydata(), ERRORS[label])
+        (ellipse,) = (patch for patch in ax.patches if isinstance(patch, Ellipse))
+        points = ellipse.get_patch_transform().transform(
+            [[np.cos(a), np.sin(a)] for a in np.linspace(0, 6, 20)]
+        )
+        distance = np.sum(points * np.linalg.solve(COVARIANCES[label], points.T).T, axis=1)
+        assert_allclose(distance, chi2.isf(0.05, 2), rtol=1e-9)
+
+
+def test_the_two_statistics_of_a_run_are_shown_with_the_interval(figures):
+    for ax, (name, value) in zip(figures["one_run"].axes, VALUES.items(), strict=True):
+        assert ax.get_ylabel() == name
+        assert_allclose(lines(ax)["one run"].get_xydata().T, [TIME, value])
+        (span,) = ax.patches
+        assert_allclose((span.get_y(), span.get_y() + span.get_height()), INTERVAL)
+
+
+def test_every_average_is_counted_and_every_bound_drawn(figures):
+    for ax, name in zip(figures["averages_spread"].axes, AVERAGES, strict=True):
+        assert sum(patch.get_height() for patch in ax.patches) == len(AVERAGES[name])
+        bounds = sorted(line.get_xdata()[0] for line in ax.lines)
+        assert bounds == sorted(b for pair in INTERVALS[name].values() for b in pair)
+
+
+def test_the_medians_of_both_statistics_are_drawn_one_interval_after_the_start(figures):
+    for ax, factor, values in zip(figures["causes"].axes, (0.1, 1), (NEES, NIS), strict=True):
+        shown = lines(ax)
+        assert_allclose(shown["printed"].get_xydata().T, [TIME + 0.001, np.median(values, axis=0)])
+        assert_allclose(shown["repaired"].get_ydata(), factor * np.median(values, axis=0))
+        assert set(shown["their median"].get_ydata()) == {5.35}
+
+
+def test_the_claims_are_drawn_beside_the_error(figures):
+    (ax,) = figures["claims"].axes
+    shown = lines(ax)
+    assert_allclose(shown["actual error of the EKF"].get_ydata(), SPREAD)
+    for label, value in CLAIMED.items():
+        assert_allclose(shown[label].get_xydata().T, [TIME + 0.001, value])

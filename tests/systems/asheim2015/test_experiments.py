@@ -1,0 +1,41 @@
+"""Comparisons of trackers: a delay that is known does less harm than one that is not."""
+
+import numpy as np
+
+from dopplerlib.systems import asheim2015 as thesis
+
+
+def test_a_delay_of_a_scan_moves_x_by_its_range_times_distance_over_baseline():
+    """0.14 m in one range at 3.9 m: some 0.5 m across, on top of the noise."""
+    names = list(thesis.late_radar([0.0, 1.0], 2, rng=np.random.default_rng(1)))
+    found = thesis.late_radar([0.0, 1.0], 60, rng=np.random.default_rng(1))
+    for name in names[:2]:  # those that ignore it
+        extra = found[name][1].value ** 2 - found[name][0].value ** 2
+        assert 0.5 < np.sqrt(extra) < 1.0
+    for name in names[2:]:
+        assert found[name][1].high < found[names[0]][1].low / 2
+
+
+def test_without_a_delay_knowing_it_changes_nothing():
+    found = list(thesis.late_radar([0.0], 10, rng=np.random.default_rng(2)).values())
+    assert found[0][0].value == found[2][0].value
+    assert found[1][0].value == found[3][0].value
+
+
+def test_the_usable_range_is_that_of_each_tracker():
+    records = thesis.simulate(30, rng=np.random.default_rng(3))
+    raw = thesis.raw_positions(records)
+    found = thesis.usable_ranges(records, {"raw": raw}, rng=np.random.default_rng(4))["raw"]
+    error = thesis.distance_error(raw.p, records.truth)
+    assert found.value == thesis.usable_range(error, records.time, records.distance)
+    assert found.low <= found.value <= found.high
+
+
+def test_the_bound_of_a_scan_is_attained_by_measured_positions():
+    """At 2.8 m, 2000 runs: within 5 deviations of a sample variance, by chance 1e-6."""
+    records = thesis.simulate(2000, rng=np.random.default_rng(5), duration=20.0, T=1.0)
+    p = records.truth[-1, :2]
+    C = np.cov(thesis.raw_positions(records).p[:, -1].T)
+    bound = thesis.one_scan_bound(p)
+    spread = np.sqrt((np.outer(np.diag(bound), np.diag(bound)) + bound**2) / 2000)
+    assert (np.abs(C - bound) < 5 * spread).all()

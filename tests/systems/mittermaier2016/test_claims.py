@@ -1,0 +1,147 @@
+"""The verdicts on record are those of another draw of all noise, and follow from the numbers.
+
+Most claims rest on tests of their own, which they name; those here are for the rest.
+"""
+
+import json
+
+import numpy as np
+import pytest
+
+from dopplerlib import RadarArray, constant_velocity, crlb, doppler_shift
+from dopplerlib.evaluation.deviations import read_deviations
+from dopplerlib.systems import mittermaier2016 as paper
+from dopplerlib.systems.mittermaier2016.published import DATA
+from tests.claims import (
+    ROOT,
+    check_flips,
+    check_references,
+    check_verdicts,
+    claims_of,
+    evidence_of,
+)
+
+DOCUMENT = "mittermaier2016"
+SEED = 7  # not that of the page
+
+
+@pytest.fixture(scope="module")
+def evidence():
+    return evidence_of(DOCUMENT, SEED)
+
+
+def test_references():
+    check_references(DOCUMENT)
+
+
+def test_verdicts(evidence):
+    check_verdicts(DOCUMENT, evidence)
+
+
+def test_a_verdict_flips_when_the_number_is_wrong(evidence):
+    check_flips(DOCUMENT, evidence)
+
+
+def test_every_part_of_the_paper_has_claims():
+    told = " ".join(claim.where for claim in claims_of(DOCUMENT))
+    for part in ("Section 2", "Section 3", "Section 4", "Eq 10", "Table 1", "Table 2"):
+        assert part in told
+    for figure in (3, 4, 5, 6):
+        assert f"Fig {figure}" in told
+
+
+def test_a_deviation_leads_to_a_cell_and_to_claims():
+    ids = [claim.id for claim in claims_of(DOCUMENT)]
+    for one in read_deviations(DATA / "deviations.toml").entries:
+        assert set(one.claims) <= set(ids), one.id
+        notebook = json.loads((ROOT / "book" / f"{one.page}.ipynb").read_text(encoding="utf-8"))
+        assert one.cell in [cell["id"] for cell in notebook["cells"]], one.id
+
+
+def test_every_underdetermined_claim_is_a_gap_that_is_listed():
+    listed = {
+        name for one in read_deviations(DATA / "deviations.toml").entries for name in one.claims
+    }
+    for claim in claims_of(DOCUMENT):
+        if claim.verdict == "underdetermined":
+            assert claim.id in listed, claim.id
+
+
+def test_what_the_paper_quotes_is_what_is_judged():
+    """The numbers of claims.toml and of table2.json were typed independently."""
+    quoted, published = paper.quoted(), {c.id: c.published for c in claims_of(DOCUMENT)}
+    assert published["nis-average"] == published["nis-average-drawn"] == quoted["nis_avg"]
+    assert published["nis-inside"] == pytest.approx(100 * quoted["fraction_nis_inside_95"])
+    assert published["chi-square-interval"] == quoted["nis_bounds_95"]
+    means = [published["innovation-low"], published["innovation-high"]]
+    assert means == quoted["innovation_mean_range_hz"]
+    assert published["nees-initial"] == quoted["initial_nees"]
+    assert published["table2-position-norm"] == quoted["position_error_norm_m"]
+    assert published["table2-velocity-norm"] == quoted["velocity_error_norm_m_s"]
+    assert published["start-drawn"] == paper.table2().x_ml[0]
+    true, estimated = (quoted[f"final_{of}_position_m"] for of in ("true", "estimated"))
+    assert published["final-true"] == true
+    error = 100 * np.abs(np.subtract(true, estimated))
+    np.testing.assert_allclose(published["final-errors-drawn"], error, atol=1e-9)
+    # The norm is stated to a unit of its own last digit.
+    assert published["final-quoted"] == pytest.approx(np.linalg.norm(error), abs=0.005)
+
+
+def test_an_acceleration_has_the_unit_of_a_speed_per_time():
+    """A doubled interval doubles the speed that the acceleration sigma_p gives: Eq 17."""
+    _, Q = constant_velocity(0.001, 0.4)
+    _, Q_long = constant_velocity(0.002, 0.4)
+    np.testing.assert_allclose(np.sqrt(Q_long[3, 3] / Q[3, 3]), 2, rtol=1e-12)
+
+
+def test_a_constant_state_is_an_assumption_for_table_2_and_a_mistake_for_figure_3():
+    """By the shifts at the middle of the window, in standard errors of a mean of ten."""
+    s, drawn = paper.scenario(), paper.published_figure3()
+    middle = np.eye(6)
+    middle[:3, 3:] = 4.5 * s.T * np.eye(3)
+    error = s.sigma_f / np.sqrt(10)
+    assert (
+        np.abs(doppler_shift(middle @ s.x0, s.array) - doppler_shift(s.x0, s.array)).max() < error
+    )
+    x = np.r_[0.5, 0.5, 0, drawn.velocity]
+    moved = np.abs(doppler_shift(middle @ x, drawn.array) - doppler_shift(x, drawn.array)).max()
+    assert moved > 10 * drawn.sigma_f / np.sqrt(10)
+
+
+@pytest.mark.parametrize("place", [(0.3, 0.1), (0.9, -0.8), (-0.5, 0.4)])
+def test_one_sample_of_a_line_does_not_see_where_the_target_is_heading(place):
+    """The bound on the position has the speed in it and not the direction.
+
+    With u_n the unit vector to sensor n and d the distance to the line, r_n = d / cos(angle), so
+    the part of H that belongs to the position is a cubic in (cos, sin). Modulo the part that
+    belongs to the velocity, which is linear in them, two functions are left; their coefficients
+    are (v_x dx - v_y dy) and (v_y dx + v_x dy): the error, turned and times the speed.
+    """
+    array = RadarArray.linear(5, 0.4)
+    angle = np.linspace(0, 2 * np.pi, 13)
+    x = np.zeros((13, 6))
+    x[:, :2] = place
+    x[:, 3], x[:, 4] = 2 * np.cos(angle), 2 * np.sin(angle)
+    free = np.array([True, True, False, True, True, False])
+    P = crlb(x, array, 0.1, free=free)
+    bound = np.sqrt(P[:, 0, 0] + P[:, 1, 1])
+    # The information has a condition of 1e9 after scaling.
+    np.testing.assert_allclose(bound, bound[0], rtol=1e-5)
+    moving = crlb(x, array, 0.1, 10, 0.001, "moving", free=free)
+    assert np.ptp(np.log(moving[:, 0, 0] + moving[:, 1, 1])) > 0.2
+
+
+def test_the_drawn_error_of_z_at_the_first_sample_is_not_that_of_table_2():
+    """Both columns may be off by half a millimeter, and the velocity adds less in a millisecond."""
+    table, drawn = paper.table2(), paper.published_figure6()
+    difference = drawn.first_error[2] - abs(table.x0 - table.x_ml)[2]
+    assert difference > 2 * 0.0005 + abs(table.x0 - table.x_ml)[5] * paper.scenario().T
+
+
+def test_turning_the_ring_hardly_changes_the_bound():
+    """Six sensors on a circle: the bound on z depends on the angle by a few percent."""
+    s = paper.scenario()
+    for samples in (10, 100, 1000):
+        rings = [RadarArray.ring(6, 0.2, phase=np.deg2rad(a)) for a in range(0, 60, 10)]
+        z = [crlb(s.x0, r, s.sigma_f, samples, s.T, "moving")[2, 2] ** 0.5 for r in rings]
+        assert max(z) < 1.1 * min(z)

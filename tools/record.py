@@ -1,0 +1,218 @@
+"""Execute every chapter again and write down what it took: the page on reproducibility.
+
+Hashes, versions, seeds, run times and the verdicts under other seeds go to book/reproducibility.md,
+which nobody edits by hand. Nothing is written unless every chapter comes out as it is stored and
+every verdict is the one on record. Without running anything, --hashes brings the hashes up to date,
+for whoever has just changed one chapter.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import platform
+import re
+import sys
+import time
+from importlib.metadata import version
+from pathlib import Path
+
+from dopplerlib.evaluation.claims import VERDICTS
+from tools import seeds as judged
+from tools.notebooks import ROOT, chapters, differences, execute
+
+PAGE = ROOT / "book" / "reproducibility.md"
+SEED = re.compile(r"default_rng\(([\d_]+)\)")
+RAN, SEEDS, TIMES = "Where it ran", "What changes with the seed", "Run times"
+OTHER_SEEDS = (1, 2, 3)
+SHOWN = 16  # hexadecimal digits of a hash: 64 bits, plenty to tell files apart
+
+
+def digest(content):
+    """Return the first digits of the SHA-256 of some bytes."""
+    return hashlib.sha256(content).hexdigest()[:SHOWN]
+
+
+def results(path):
+    """Return the outputs of a notebook, all cells together, as bytes."""
+    cells = json.loads(path.read_text(encoding="utf8"))["cells"]
+    return json.dumps([cell.get("outputs", []) for cell in cells], sort_keys=True).encode()
+
+
+def seeds(path):
+    """Return the seeds that the cells of a notebook name, in rising order."""
+    cells = json.loads(path.read_text(encoding="utf8"))["cells"]
+    source = "".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    return sorted({int(seed) for seed in SEED.findall(source)})
+
+
+def data_files():
+    """Return every file with numbers of a source document."""
+    return sorted(
+        path
+        for path in (ROOT / "data").rglob("*")
+        if path.is_file() and path.name != "README.md" and path.parent != ROOT / "data"
+    )
+
+
+def packages():
+    """Return the packages that the project asks for, by name, with their versions."""
+    lines = (ROOT / "requirements.in").read_text(encoding="utf8").splitlines()
+    names = [re.split(r"[=<>\[; ]", line)[0] for line in lines if line and line[0] != "#"]
+    return {name: version(name) for name in sorted(names)}
+
+
+def processor():
+    """Return the name of the processor, as far as the system tells it."""
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf8")
+    except OSError:
+        text = ""
+    found = re.search(r"^model name\s*:\s*(.+)$", text, flags=re.MULTILINE)
+    return found[1] if found else platform.processor() or platform.machine()
+
+
+def table(head, rows):
+    """Return a table in Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
+
+
+def hash_tables():
+    """Return the tables of the page that must never be out of date: results and data."""
+    chapter_rows = [
+        (f"`{path.name}`", ", ".join(map(str, seeds(path))) or "none", f"`{digest(results(path))}`")
+        for path in chapters()
+    ]
+    data_rows = [
+        (f"`{path.relative_to(ROOT).as_posix()}`", f"`{digest(path.read_bytes())}`")
+        for path in data_files()
+    ]
+    return (
+        table(("chapter", "seeds", "hash of its results"), chapter_rows),
+        table(("file", "hash"), data_rows),
+    )
+
+
+def where_it_ran():
+    """Return the section on Python, the processor and the packages."""
+    return f"""CPython {platform.python_version()} on {platform.system()} ({platform.machine()}),
+{processor()}, {os.cpu_count()} cores. Every chapter ran alone and on one thread for linear algebra.
+
+{table(("package", "version"), packages().items())}
+
+These are the packages that the project asks for; `environment.lock` holds all that they ask for in
+turn, with the hash of every file."""
+
+
+def run_times():
+    """Execute the chapters; return the section on their run times, or None if one differs."""
+    rows, bad = [], 0
+    for path in chapters():
+        print(f"{path.name} ...", end=" ", file=sys.stderr, flush=True)
+        start = time.perf_counter()
+        found = differences(path.read_text(encoding="utf8"), execute(path, timeout=300))
+        seconds = time.perf_counter() - start
+        print(f"{seconds:.1f} s", *found, sep="\n  ", file=sys.stderr)
+        rows.append((f"`{path.name}`", f"{seconds:.0f}"))
+        bad += bool(found)
+    text = f"""Of the whole chapter, with the kernels compiled before. They say what to expect, no
+more: on other machines, and on a busy one, they differ.
+
+{table(("chapter", "run time in s"), rows)}"""
+    return None if bad else text
+
+
+def seeds_tried():
+    """Judge all claims with other seeds; return the section, or None if a verdict differs."""
+    found = {}
+    for document in judged.documents():
+        found[document] = {}
+        for seed in OTHER_SEEDS:
+            print(f"claims of {document}, seed {seed} ...", file=sys.stderr, flush=True)
+            found[document][seed] = judged.verdicts(document, seed)
+    different = judged.differences(found, {name: judged.on_record(name) for name in found})
+    print(*different, sep="\n", file=sys.stderr)
+    rows = [
+        (name, seed, *(list(by_claim.values()).count(verdict) for verdict in VERDICTS))
+        for name, by_seed in found.items()
+        for seed, by_claim in by_seed.items()
+    ]
+    text = f"""The numbers of random results do, the verdicts do not. `make seeds` draws all noise
+behind every claim again, with other seeds than the pages and the tests use, and fails if one
+verdict is not that on record.
+
+{table(("document", "seed", *VERDICTS), rows)}"""
+    return None if different else text
+
+
+def page(measured):
+    """Return the page as text; `measured` holds the sections that take a run, by title."""
+    chapter_table, data_table = hash_tables()
+    return f"""(sec-reproducibility)=
+# Can you repeat it?
+
+<!-- Written by `make record`; do not edit. -->
+
+Yes, with one command: `make test` executes every chapter and compares all text that comes out with
+what is stored, and `make notebooks-check` compares every byte, the figures included. Both install
+the exact versions of `environment.lock` first. This page tells what the stored results are, and
+where they were last made.
+
+## {RAN}
+
+{measured[RAN]}
+
+## Results
+
+A hash is made of the first {SHOWN} digits of SHA-256, over all outputs of a chapter, text and
+figures. Seeds are those that its cells hand to `numpy.random.default_rng`.
+
+{chapter_table}
+
+## {SEEDS}
+
+{measured[SEEDS]}
+
+## {TIMES}
+
+{measured[TIMES]}
+
+## Data
+
+{data_table}
+
+## How to cite
+
+`CITATION.cff` in the root of the project names the book and the paper that it replicates; reference
+managers read it. `codecheck.yml` lists for every figure and table of the paper the file that
+reproduces it, for whoever wants to check the replication formally.
+"""
+
+
+def recorded(text):
+    """Return the sections of a page that take a run, by title."""
+    return {
+        title: text.split(f"\n## {title}\n")[1].split("\n## ")[0].strip()
+        for title in (RAN, SEEDS, TIMES)
+    }
+
+
+def main(argv=None):
+    """Write the page; return 1 if a result kept it from being written."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--hashes", action="store_true", help="run nothing, keep what was measured")
+    if parser.parse_args(argv).hashes:
+        measured = recorded(PAGE.read_text(encoding="utf8"))
+    else:
+        measured = {RAN: where_it_ran(), TIMES: run_times(), SEEDS: seeds_tried()}
+    if None in measured.values():
+        return 1
+    temporary = PAGE.with_suffix(".tmp")
+    temporary.write_text(page(measured), encoding="utf8", newline="\n")
+    temporary.replace(PAGE)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,91 @@
+"""Judge the claims of every document with several seeds: no verdict may depend on the draw.
+
+Prints how many claims of each document got which verdict, for each seed, and every claim whose
+verdict is not the one on record. Progress goes to standard error. The exit code is
+1 if there is one.
+"""
+
+import argparse
+import sys
+from collections import Counter
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from dopplerlib.evaluation.claims import VERDICTS, read_claims
+from dopplerlib.evaluation.verdicts import judge_all
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def documents(root=ROOT):
+    """Return the names of the documents that have claims and evidence for them."""
+    return [
+        path.parent.name
+        for path in sorted((root / "data").glob("*/claims.toml"))
+        if (root / "dopplerlib" / "systems" / path.parent.name / "claims.py").exists()
+    ]
+
+
+def verdicts(document, seed):
+    """Return the verdict on every claim, by its id, with one draw of all noise."""
+    claims = read_claims(ROOT / "data" / document / "claims.toml")
+    module = import_module(f"dopplerlib.systems.{document}.claims")
+    evidence = module.evidence(rng=np.random.default_rng(seed))
+    return {one.claim.id: one.verdict for one in judge_all(claims, evidence)}
+
+
+def on_record(document):
+    """Return the verdicts that the file of claims tells."""
+    claims = read_claims(ROOT / "data" / document / "claims.toml")
+    return {claim.id: claim.verdict for claim in claims}
+
+
+def table(found):
+    """Return the lines of the table.
+
+    `found` has the verdicts by document, seed and claim.
+    """
+    width = max(len(name) for name in ["document", *found])
+    lines = [" ".join([f"{'document':{width}}", f"{'seed':>6}", *VERDICTS])]
+    for document, by_seed in found.items():
+        for seed, by_claim in by_seed.items():
+            counts = Counter(by_claim.values())
+            numbers = [f"{counts[verdict]:{len(verdict)}}" for verdict in VERDICTS]
+            lines.append(" ".join([f"{document:{width}}", f"{seed:6}", *numbers]))
+    return lines
+
+
+def differences(found, record):
+    """Return a line for every verdict that is not the one on record."""
+    lines = []
+    for document, by_seed in found.items():
+        for seed, by_claim in by_seed.items():
+            for claim in sorted(by_claim.keys() | record[document].keys()):
+                here, there = by_claim.get(claim), record[document].get(claim)
+                if here != there:
+                    lines.append(f"{document}, seed {seed}: {claim} is {here}, on record {there}")
+    return lines
+
+
+def main(arguments=None):
+    """Judge, print, and return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("documents", nargs="*", help="all that have claims if none is named")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
+    chosen = parser.parse_args(arguments)
+    found = {}
+    for document in chosen.documents or documents():
+        found[document] = {}
+        for seed in chosen.seeds:
+            print(f"{document}, seed {seed} ...", file=sys.stderr, flush=True)
+            found[document][seed] = verdicts(document, seed)
+    print(*table(found), sep="\n")
+    differ = differences(found, {document: on_record(document) for document in found})
+    print(*(differ or ["every verdict is the one on record"]), sep="\n")
+    return 1 if differ else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
