@@ -30,7 +30,7 @@ endef
 
 .PHONY: help
 help:  ## show this list
-	@sed -n 's/^\([a-z-]*\):.*  ## /\1\t/p' $(MAKEFILE_LIST) | expand -t 18
+	@sed -n 's/^\([a-z0-9-]*\):.*  ## /\1\t/p' $(MAKEFILE_LIST) | expand -t 18
 
 .PHONY: book
 book: $(VENV)/.ready  ## build the book: book/_build/html/index.html
@@ -67,8 +67,12 @@ kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
 	$(PY) -m dopplerlib.derive
 
 .PHONY: figure4
-figure4: $(VENV)/.ready  ## run the study of Fig 4 and score every reading of it
-	$(PY) tools/figure4.py
+figure4: $(VENV)/.ready  ## run the study of Fig 4 in full: some twenty seconds
+	$(PY) tools/figure4.py study
+
+.PHONY: figure4-readings
+figure4-readings: $(VENV)/.ready  ## score every reading of Fig 4: some minutes
+	$(PY) tools/figure4.py readings
 
 .PHONY: seeds
 seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depend on the draw

@@ -1,6 +1,7 @@
 """The data files are what their READMEs say: the files, the columns, and what is missing."""
 
 import csv
+import hashlib
 import json
 import math
 import re
@@ -86,6 +87,18 @@ def test_a_toml_file_names_its_source(path):
     tomllib.loads(text)
     first, folder = text.splitlines()[0], path.parent.name
     assert first.startswith("# ") and folder.rstrip("0123456789") in first.lower().replace("å", "a")
+
+
+@pytest.mark.parametrize("path", [p for p in FILES if p.suffix == ".sigmf-meta"], ids=name)
+def test_a_recording_says_that_it_is_simulated_and_has_its_samples(path):
+    meta = json.loads(path.read_text(encoding="utf-8"))["global"]
+    assert "Simulated" in meta["core:description"]
+    data = path.with_suffix(".sigmf-data").read_bytes()
+    assert hashlib.sha512(data).hexdigest() == meta["core:sha512"]
+    told = re.search(r"\| (\d+) for each channel at (\d+) kHz", readme(path.parent)).groups()
+    samples, kilohertz = map(int, told)
+    assert len(data) == samples * meta["core:num_channels"] * 2 * 2  # I and Q of two bytes each
+    assert meta["core:sample_rate"] == 1000 * kilohertz
 
 
 @pytest.mark.parametrize("file", ["fig6_nis.csv", "fig6_errors.csv"])

@@ -5,16 +5,27 @@ Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
 from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
+from .chain_errors import Judged, judged, position_bound
+from .end_to_end import FAULTS, Baseband, EndToEnd, received, track_iq
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
 from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
-from .noise_sweep import ERROR_LIMITS, NOISE_LEVELS, Figure4, SweepReading, figure4
+from .noise_sweep import (
+    ERROR_LIMITS,
+    NOISE_LEVELS,
+    Figure4,
+    SweepReading,
+    figure4,
+    figure4_array,
+    grid_points,
+)
 from .published import (
     PublishedFigure3,
     PublishedFigure4,
     PublishedFigure6,
     Table2,
+    figure4_settings,
     published_figure3,
     published_figure4,
     published_figure6,
@@ -23,6 +34,7 @@ from .published import (
     signal_chain,
     table2,
 )
+from .simulated_iq import SIMULATED, read_simulated_iq, simulated_recording, write_simulated_iq
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
 from .sweep_readings import (
     SCORED_LEVELS,
@@ -38,15 +50,20 @@ from .white_noise import WalkFilter, walk_filter
 
 __all__ = [
     "ERROR_LIMITS",
+    "FAULTS",
     "NOISE_LEVELS",
     "ORIENTATIONS",
     "SCORED_LEVELS",
+    "SIMULATED",
     "SWEEP_READINGS",
+    "Baseband",
     "Consistency",
+    "EndToEnd",
     "ErrorMap",
     "Figure4",
     "Figure6",
     "Figure6Readings",
+    "Judged",
     "PublishedFigure3",
     "PublishedFigure4",
     "PublishedFigure6",
@@ -65,29 +82,39 @@ __all__ = [
     "figure3_readings",
     "figure3_score",
     "figure4",
+    "figure4_array",
     "figure4_readings",
     "figure4_score",
+    "figure4_settings",
     "figure6",
     "figure6_readings",
+    "grid_points",
+    "judged",
     "linear_filter",
     "linear_world",
     "matched_P0",
+    "position_bound",
     "published_figure3",
     "published_figure4",
     "published_figure6",
     "quoted",
     "range_claims",
+    "read_simulated_iq",
+    "received",
     "ruled_out",
     "samples_needed",
     "saved_figure4",
     "scenario",
     "shares_above",
     "signal_chain",
+    "simulated_recording",
     "start_box",
     "start_misfit",
     "still_counts",
     "switched_ekf",
     "table2",
     "table2_starts",
+    "track_iq",
     "walk_filter",
+    "write_simulated_iq",
 ]

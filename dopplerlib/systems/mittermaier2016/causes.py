@@ -90,6 +90,7 @@ def switched_ekf(
     F, Q = constant_velocity(T, sigma_p, noise)
     R = sigma_f**2 * np.eye(len(array))
     x = np.broadcast_to(x0, (len(z), 6))
+    eye = np.eye(len(array))
     steps = []
     for k in range(z.shape[1]):
         x, P = x @ F.T, F @ P @ F.T + Q
@@ -99,18 +100,23 @@ def switched_ekf(
             straight = shift[k] + _times(H, x - path[k])
             predicted = predicted + (1 - curvature) * straight
         PHt = P @ np.swapaxes(H, -1, -2)
-        S = H @ PHt + R
+        straight_S = H @ PHt
+        S = straight_S + R
         if second_order:
             mean, covariance = _missed(x, P, array)
             predicted, S = predicted + curvature * mean, S + curvature**2 * covariance
-        gain = np.swapaxes(np.linalg.solve(S, np.swapaxes(PHt, -1, -2)), -1, -2)
+        # One decomposition of S for the gain and for NIS.
+        HP = np.broadcast_to(np.swapaxes(PHt, -1, -2), (*S.shape[:-1], 6))
+        both = np.concatenate([HP, np.broadcast_to(eye, S.shape)], axis=-1)
+        solved = np.linalg.solve(S, both)
+        gain, weight = np.swapaxes(solved[..., :6], -1, -2), solved[..., 6:]
         innovation = z[:, k] - predicted
         x = x + _times(gain, innovation)
         # I - K H would do if S were H P H' + R; this holds with more in S as well.
         A = np.eye(6) - gain @ H
-        extra = S - H @ PHt
+        extra = S - straight_S
         P = A @ P @ np.swapaxes(A, -1, -2) + gain @ extra @ np.swapaxes(gain, -1, -2)
-        nis = np.sum(innovation * _times(np.linalg.inv(S), innovation), axis=-1)
+        nis = np.sum(innovation * _times(weight, innovation), axis=-1)
         steps.append((x, P, innovation, S, nis))
     x, P, innovation, S, nis = (np.stack(part, axis=1) for part in zip(*steps, strict=True))
     return Track(x, P, innovation, S, nis, np.ones(nis.shape, bool))

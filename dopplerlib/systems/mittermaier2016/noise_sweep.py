@@ -1,6 +1,7 @@
 """How the error of the start grows with the noise (Fig 4), under any reading of the text."""
 
 import sys
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,23 +11,17 @@ from ...estimation.maximum_likelihood import ml_start
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_shift
 from ...model.radar_array import RadarArray
+from .published import figure4_settings
 
-# Variances of the 31 levels of the figure, in Hz^2.
-NOISE_LEVELS = 10.0 ** (-4 + 4 * np.arange(31) / 30)
-# Section 3.4: five sensors, 0.4 m, ten samples in 10 ms.
-SENSORS, LENGTH, SAMPLES, T = 5, 0.4, 10, 0.001
-DEPTH, WIDTH = (0.3, 1.0), (-0.5, 0.5)
+_SETTINGS = figure4_settings()
+_NOISE, _GRID, _OURS = _SETTINGS["noise"], _SETTINGS["grid"], _SETTINGS["ours"]
+_ENDS = np.log10([_NOISE["lowest"], _NOISE["highest"]])
+# Variances of the levels of the figure, in Hz^2.
+NOISE_LEVELS = 10.0 ** (
+    _ENDS[0] + (_ENDS[1] - _ENDS[0]) * np.arange(_NOISE["levels"]) / (_NOISE["levels"] - 1)
+)
 # What the text says that the averaged errors stay below, in m and m/s.
-ERROR_LIMITS = (0.3, 0.2)
-
-# Where the search may look: distance from the array, along it, and the two velocities.
-# The text says that there are bounds, not which. Its line of sensors is blind for the side on
-# which the target is, so every box ends in front of it.
-BOXES = {
-    "wide": ((0.01, -2, -2, -2), (2, 2, 2, 2)),
-    "approaching": ((0.01, -2, -2, -2), (2, 2, 0, 2)),
-    "region": ((0.3, -0.5, -2, -2), (1, 0.5, 2, 2)),
-}
+ERROR_LIMITS = _SETTINGS["limits"]["position"], _SETTINGS["limits"]["velocity"]
 _PLANE = [True, True, False, True, True, False]
 
 
@@ -47,20 +42,25 @@ class SweepReading:
     likelihood : {"moving", "static"}
         See `ml_start`; the simulated target does what the likelihood says.
     spacing : float
-        Of the grid, in m. The text says 0.05.
+        Of the grid, in m.
     box : {"wide", "approaching", "region"}
-        See `BOXES`.
+        Which bounds the search has.
     axis : {"y", "x"}
         Along which the array stands. The text gives its length only.
+
+    Notes
+    -----
+    The defaults are our choice, but for the spacing; they and the boxes stand in
+    ``data/mittermaier2016/figure4.toml``.
     """
 
-    velocity: str = "direction"
-    speed: tuple = (0.75, 0.75)
-    shared: bool = True
-    likelihood: str = "moving"
-    spacing: float = 0.05
-    box: str = "wide"
-    axis: str = "y"
+    velocity: str = _OURS["velocity"]
+    speed: tuple = tuple(_OURS["speed"])
+    shared: bool = _OURS["shared"]
+    likelihood: str = _OURS["likelihood"]
+    spacing: float = _GRID["spacing"]
+    box: str = _OURS["box"]
+    axis: str = _OURS["axis"]
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class Figure4:
 
 
 def figure4(
-    levels=None, draws=20, *, rng, reading=None, bound=True, progress=False, workers=None
+    levels=None, draws=None, *, rng, reading=None, bound=True, progress=False, workers=None
 ):  # fmt: skip
     """Run the study of Fig 4.
 
@@ -98,8 +98,8 @@ def figure4(
     ----------
     levels : sequence of int, optional
         Numbers of the noise levels, 0 to 30; all if None.
-    draws : int
-        Number of velocity draws: 20 in the figure, eleven in the text.
+    draws : int, optional
+        Number of velocity draws; as many as the figure has markers at a level if None.
     rng : numpy.random.Generator
         Source of velocities and noise. Fewer levels or draws give the same values of those asked
         for.
@@ -132,21 +132,23 @@ def figure4(
     levels = list(range(len(NOISE_LEVELS)) if levels is None else levels)
     if not all(isinstance(k, int | np.integer) and 0 <= k < len(NOISE_LEVELS) for k in levels):
         raise ValueError(f"levels must be whole numbers from 0 to 30, got {levels}")
+    draws = _SETTINGS["velocities"]["in_figure"] if draws is None else draws
     draws = _checks.whole_number("draws", draws)
     _checks.generator("rng", rng)
-    _checks.one_of("reading.box", reading.box, tuple(BOXES))
+    _checks.one_of("reading.box", reading.box, tuple(_OURS["boxes"]))
     _checks.one_of("reading.axis", reading.axis, ("x", "y"))
 
-    array = RadarArray.linear(SENSORS, LENGTH, axis=reading.axis)
+    T, samples = _SETTINGS["sampling"]["T"], _SETTINGS["sampling"]["samples"]
+    array = figure4_array(reading.axis)
     streams = [child.spawn(1 + len(NOISE_LEVELS)) for child in rng.spawn(draws)]
     x = np.stack([_states(reading, own[0]) for own in streams])
-    path = np.repeat(x[..., None, :], SAMPLES, axis=-2)
+    path = np.repeat(x[..., None, :], samples, axis=-2)
     if reading.likelihood == "moving":
-        path[..., :3] += T * np.arange(SAMPLES)[:, None] * path[..., 3:]
+        path[..., :3] += T * np.arange(samples)[:, None] * path[..., 3:]
     clean = doppler_shift(path, array)
     box = _box(reading)
     errors = []
-    for k in _bar(levels, "noise level", progress):
+    for k in progress_bar(levels, "noise level", progress):
         noise = np.stack([own[1 + k].standard_normal(clean.shape[1:]) for own in streams])
         sigma_f = np.sqrt(NOISE_LEVELS[k])
         z = clean + sigma_f * noise
@@ -155,7 +157,7 @@ def figure4(
     errors = np.array(errors)  # levels, two parts, draws, grid points
     mean, median = errors.mean(axis=-1), np.median(errors, axis=-1)
     if bound:
-        P = crlb(x, array, 1.0, SAMPLES, T, reading.likelihood, free=_PLANE)
+        P = crlb(x, array, 1.0, samples, T, reading.likelihood, free=_PLANE)
         unit = np.stack([mean_norm(P[..., part, part]).mean(axis=-1) for part in _PARTS])
     else:
         unit = np.full((2, draws), np.nan)
@@ -198,23 +200,47 @@ def mean_norm(P):
     return np.sqrt(2 * large / np.pi) * ellipe(np.minimum(1.0, 2 * half / large))
 
 
-def grid_points(spacing=0.05):
+def figure4_array(axis=None):
+    """Return the sensors of the study.
+
+    Parameters
+    ----------
+    axis : {"x", "y"}, optional
+        Along which they stand, which the text does not say; that of `SweepReading()` if None.
+
+    Returns
+    -------
+    RadarArray
+    """
+    settings = dict(_SETTINGS["array"])
+    if settings.pop("shape") != "linear":
+        raise ValueError("array in figure4.toml must have the shape linear")
+    return RadarArray.linear(**settings, axis=_OURS["axis"] if axis is None else axis)
+
+
+def grid_points(spacing=None):
     """Return the positions of the study.
 
     Parameters
     ----------
-    spacing : float
-        In m. The text says 0.05: 315 points.
+    spacing : float, optional
+        In m; that of the text if None.
 
     Returns
     -------
     ndarray, shape (M, 2)
-        In m; x runs from 0.3 to 1, y from -0.5 to 0.5.
+        In m.
+
+    Examples
+    --------
+    >>> grid_points().shape
+    (315, 2)
     """
+    spacing = _GRID["spacing"] if spacing is None else spacing
     spacing = _checks.positive_number("spacing", spacing)
     axes = [
         low + spacing * np.arange(int((high - low) / spacing + 1e-9) + 1)
-        for low, high in (DEPTH, WIDTH)
+        for low, high in (_GRID["x"], _GRID["y"])
     ]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
 
@@ -253,7 +279,7 @@ def _box(reading):
     """Return the bounds of the state; the first of the box is the distance from the array."""
     order = [0, 1, 3, 4] if reading.axis == "y" else [1, 0, 4, 3]
     box = np.zeros((2, 6))
-    box[:, order] = BOXES[reading.box]
+    box[:, order] = _OURS["boxes"][reading.box]
     return box
 
 
@@ -262,12 +288,37 @@ def _sizes(error):
     return np.stack([np.linalg.norm(error[..., part], axis=-1) for part in _PARTS])
 
 
-def _bar(items, label, wanted):
-    """Yield the items, with a bar on standard error if it is wanted."""
+def progress_bar(items, label, wanted=True):
+    """Yield items and show on standard error how many are done and how long the rest takes.
+
+    Parameters
+    ----------
+    items : sequence
+        Each of them should take about the same time.
+    label : str
+        What stands before the bar.
+    wanted : bool
+        Whether there is a bar.
+
+    Yields
+    ------
+    object
+        The items.
+    """
+    start = time.monotonic()
     for done, item in enumerate(items):
         if wanted:
-            sys.stderr.write(f"\r{label} {done + 1:2d} of {len(items)}")
-            sys.stderr.flush()
+            spent = time.monotonic() - start
+            left = f"{spent / done * (len(items) - done):.0f} s left" if done else ""
+            _draw(label, done / len(items), left)
         yield item
     if wanted:
+        _draw(label, 1.0, "")
         sys.stderr.write("\n")
+
+
+def _draw(label, share, left):
+    full = round(30 * share)
+    # Spaces at the end cover what a longer line has left.
+    sys.stderr.write(f"\r{label} [{'#' * full}{'.' * (30 - full)}] {share:4.0%} {left:12}")
+    sys.stderr.flush()

@@ -229,10 +229,21 @@ def published_figure4():
         for part in ("position", "velocity")
     ]
     variance, level = np.unique(tables[0]["variance_hz2"], return_inverse=True)
-    dots = np.empty((2, len(variance), 20))
+    dots = np.empty((2, len(variance), figure4_settings()["velocities"]["in_figure"]))
     for values, table in zip(dots, tables, strict=True):
         values[level, table["series"].astype(int) - 1] = table["error"]
     return PublishedFigure4(variance, *dots)
+
+
+def figure4_settings():
+    """Return the settings of the study of Fig 4, by name.
+
+    Returns
+    -------
+    dict
+        See ``data/mittermaier2016/figure4.toml``; under ``ours`` what the paper leaves open.
+    """
+    return tomllib.loads((DATA / "figure4.toml").read_text(encoding="utf-8"))
 
 
 def signal_chain():

@@ -6,50 +6,44 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .noise_sweep import NOISE_LEVELS, Figure4, SweepReading
-from .published import DATA
+from .published import DATA, figure4_settings
 
-# The paper's own speeds: that of Table 2 (rounded), the unit, and that of Fig 3.
-_VELOCITIES = (
-    SweepReading("center", (0.5, 1.0)),
-    SweepReading("center", (0.5, 1.5)),
-    SweepReading("center", (0.0, 2.0)),
-    SweepReading("direction", (0.75, 0.75)),
-    SweepReading("direction", (1.0, 1.0)),
-    SweepReading("direction", (2.0, 2.0)),
-    SweepReading("disc", (0.0, 1.0)),
-    SweepReading("disc", (0.0, 2.0)),
-    SweepReading("square", (0.0, 1.0)),
-    SweepReading("square", (0.0, 2.0)),
+_SETTINGS = figure4_settings()
+_COMPARED = _SETTINGS["ours"]["comparison"]
+_VELOCITIES = tuple(
+    SweepReading(kind, (low, high), spacing=_COMPARED["coarse"])
+    for kind, low, high in _COMPARED["velocities"]
 )
+_BOTH = tuple(
+    (shared, likelihood) for shared in (True, False) for likelihood in ("moving", "static")
+)
+
+
+def _some(name):
+    return [_VELOCITIES[i] for i in _COMPARED[name]]
+
+
 # Every velocity with either likelihood, one draw for all points or one for each. Then, for some of
 # them, what else could be different: the grid of the text, other boxes, the array turned.
 SWEEP_READINGS = (
-    tuple(
-        replace(velocity, shared=shared, likelihood=likelihood, spacing=0.1)
-        for velocity in _VELOCITIES
-        for shared in (True, False)
-        for likelihood in ("moving", "static")
-    )
-    + tuple(
-        replace(velocity, likelihood=likelihood)
-        for velocity in (_VELOCITIES[1], _VELOCITIES[3])
-        for likelihood in ("moving", "static")
-    )
-    + tuple(
-        replace(velocity, shared=shared, likelihood=likelihood, spacing=0.1, box=box)
-        for velocity in (_VELOCITIES[1], _VELOCITIES[3], _VELOCITIES[8])
-        for shared in (True, False)
-        for likelihood in ("moving", "static")
+    *(replace(v, shared=s, likelihood=name) for v in _VELOCITIES for s, name in _BOTH),
+    *(
+        replace(v, likelihood=name, spacing=_SETTINGS["grid"]["spacing"])
+        for v in _some("text_grid")
+        for name in ("moving", "static")
+    ),
+    *(
+        replace(v, shared=s, likelihood=name, box=box)
+        for v in _some("more_boxes")
+        for s, name in _BOTH
         for box in ("approaching", "region")
-    )
-    + tuple(
-        replace(velocity, spacing=0.1, axis="x") for velocity in (_VELOCITIES[1], _VELOCITIES[3])
-    )
+    ),
+    *(replace(v, axis="x") for v in _some("turned")),
 )
-# Levels at which readings are compared: below them the dots are a few steps of their grid.
-SCORED_LEVELS = (10, 14, 18, 22, 26, 30)
+# Levels at which readings are compared.
+SCORED_LEVELS = tuple(_COMPARED["levels"])
 # Markers of the figure stand on a grid of this many m or m/s.
-STEP = 0.00137
+STEP = _SETTINGS["drawing"]["step"]
 
 
 @dataclass(frozen=True)
@@ -66,11 +60,14 @@ class Structure:
         Covariance of what a sequence keeps over all levels. Unbiased, so not always positive.
     within : ndarray, shape (2, 2)
         Covariance of what changes from dot to dot.
+    draws : float
+        Number of sequences that `mean` is the average of; infinite if it is exact.
     """
 
     mean: np.ndarray
     between: np.ndarray
     within: np.ndarray
+    draws: float = np.inf
 
 
 def dots_structure(position, velocity):
@@ -102,7 +99,7 @@ def dots_structure(position, velocity):
     change = rest - kept
     within = np.einsum("ldi,ldj->ij", change, change) / ((draws - 1) * (levels - 1))
     between = kept.T @ kept / (draws - 1) - within / levels
-    return Structure(mean, between, within)
+    return Structure(mean, between, within, draws)
 
 
 def dots_log_likelihood(model, position, velocity):
@@ -123,17 +120,29 @@ def dots_log_likelihood(model, position, velocity):
     Notes
     -----
     The logarithms of a sequence are taken as normally distributed, with the rounding of the
-    figure's markers added. A negative variance between sequences counts as zero.
+    figure's markers added. A negative variance between sequences counts as zero. Where the mean
+    of the model is itself that of m simulated sequences of covariance S, its error S / m is added
+    to the covariance of the mean of the dots: else our own Monte Carlo error would look like a
+    misfit.
     """
     dots = np.log(np.stack([position, velocity], axis=-1))
     levels, draws = dots.shape[:2]
     size, axes = np.linalg.eigh(model.between)
     between = (axes * np.maximum(size, 0)) @ axes.T
     S = np.kron(np.ones((levels, levels)), between) + np.kron(np.eye(levels), model.within)
-    S += np.diag(STEP**2 / 12 / np.exp(2 * model.mean.ravel()))
+    ours = S / model.draws
+    S = S + np.diag(STEP**2 / 12 / np.exp(2 * model.mean.ravel()))
     error = (dots - model.mean[:, None]).transpose(0, 2, 1).reshape(-1, draws)
-    square = np.sum(error * np.linalg.solve(S, error))
-    return float(-0.5 * (square + draws * np.linalg.slogdet(2 * np.pi * S)[1]))
+    # Mean and deviations of the sequences are independent; only the mean shares our error.
+    average = error.mean(axis=1, keepdims=True)
+    loss = _square(error - average, S) + (draws - 1) * np.linalg.slogdet(2 * np.pi * S)[1]
+    S = S + draws * ours
+    loss += draws * _square(average, S) + np.linalg.slogdet(2 * np.pi * S)[1]
+    return float(-0.5 * loss)
+
+
+def _square(error, S):
+    return np.sum(error * np.linalg.solve(S, error))
 
 
 def figure4_score(figure, published, *, rng, resamples=200):
@@ -169,8 +178,14 @@ def figure4_score(figure, published, *, rng, resamples=200):
     return one(np.arange(draws)), *(float(q) for q in np.quantile(again, (0.025, 0.975)))
 
 
-def figure4_readings():
-    """Return every reading with its score, the most likely first, as `make figure4` left them.
+def figure4_readings(again=False):
+    """Return every reading with its score, the most likely first, as they are saved.
+
+    Parameters
+    ----------
+    again : bool
+        Whether to return, instead, the best reading with either likelihood, simulated once more
+        with another seed.
 
     Returns
     -------
@@ -179,18 +194,19 @@ def figure4_readings():
     """
     saved = json.loads((DATA / "ourfigure4_readings.json").read_text(encoding="utf-8"))
     rows = []
-    for row in saved["readings"]:
+    for row in saved["again" if again else "readings"]:
         values = tuple(row.pop(name) for name in ("score", "low", "high"))
         rows.append((SweepReading(**row | {"speed": tuple(row["speed"])}), *values))
     return sorted(rows, key=lambda row: -row[1])
 
 
 def saved_figure4():
-    """Return the study in full, as `make figure4` left it: 31 levels, 20 draws, 315 points.
+    """Return the study in full, as ``make figure4`` left it.
 
     Returns
     -------
     Figure4
+        All levels and points of the grid, as many draws as the figure has markers at a level.
     """
     table = np.genfromtxt(DATA / "ourfigure4.csv", delimiter=",", names=True)
     parts = [table[name].reshape(len(NOISE_LEVELS), -1) for name in table.dtype.names[2:]]

@@ -14,7 +14,7 @@ from .student_filter import student_jacobian
 AXES = "xyz"
 
 
-def evidence(*, rng, runs=400, as_reported=None):
+def evidence(*, rng, runs=400):
     """Collect the evidence for ``data/sombatsatien/claims.toml``.
 
     Parameters
@@ -23,8 +23,6 @@ def evidence(*, rng, runs=400, as_reported=None):
         Source of randomness.
     runs : int
         Number of records. With 300 or fewer not even a number outside all of them is decided.
-    as_reported : PostMortem, optional
-        Runs of the report's system, if they have been made already.
 
     Returns
     -------
@@ -32,8 +30,7 @@ def evidence(*, rng, runs=400, as_reported=None):
         By the id of the claim; see `judge_all`.
     """
     paper, s = mittermaier2016.scenario(), scenario()
-    if as_reported is None:
-        as_reported = post_mortem(runs, rng=rng)
+    as_reported = post_mortem(runs, rng=rng)
     sign = post_mortem(100, rng=rng, jacobian="derived")
     repaired = post_mortem(runs, rng=rng, jacobian="derived", plane="x", start="long")
     return {

@@ -89,14 +89,15 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
         shift, *gradient = doppler_shift_and_gradient(*x.T[..., None], *sensors)
         innovation = z[:, k] - shift
         H = np.stack(gradient, axis=-1) * signs
-        S = H @ P @ H.mT + R
+        HP = H @ P
+        S = HP @ H.mT + R
         # One decomposition of S for the gain and for NIS; P and S are symmetric.
-        right = np.concatenate([H @ P, innovation[..., None]], axis=-1)
+        right = np.concatenate([HP, innovation[..., None]], axis=-1)
         solved = np.linalg.solve(S, right)
         gain = solved[..., :6].mT
         x = x + (gain @ innovation[..., None])[..., 0]
         A = np.eye(6) - gain @ H
-        P = A @ P @ A.mT + gain @ R @ gain.mT
+        P = A @ P @ A.mT + sigma_f**2 * gain @ gain.mT
         out.x[:, k], out.P[:, k], out.innovation[:, k], out.S[:, k] = x, P, innovation, S
         out.nis[:, k] = np.sum(innovation * solved[..., 6], axis=-1)
     return out

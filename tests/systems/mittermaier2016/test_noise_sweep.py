@@ -1,6 +1,7 @@
 """Fig 4: the study of the error against the noise, and how its readings are compared."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -29,6 +30,7 @@ def test_the_grid_is_that_of_the_text():
 
 def test_the_figure_has_31_levels_of_20_dots_and_passes_one_of_its_limits():
     dots = paper.published_figure4()
+    assert paper.ERROR_LIMITS == (0.3, 0.2)
     np.testing.assert_allclose(dots.variance, paper.NOISE_LEVELS, rtol=1e-4)  # printed to 5 digits
     assert dots.position.shape == dots.velocity.shape == (31, 20)
     assert dots.position.max() < 0.3
@@ -97,9 +99,13 @@ def test_every_reading_stays_in_its_box_and_approaches(velocity, axis):
 
 def test_progress_goes_to_standard_error_and_only_if_it_is_wanted(capsys):
     rng = np.random.default_rng(1)
-    paper.figure4([30], 1, rng=rng, reading=COARSE, progress=True)
+    paper.figure4([30, 29], 1, rng=rng, reading=COARSE, progress=True)
     out, err = capsys.readouterr()
-    assert (out, err) == ("", "\rnoise level  1 of 1\n")
+    assert out == ""
+    shown = re.findall(r"\r(\S+ \S+) \[([#.]+)\] +(\d+)% +(\d+ s left)? *", err)
+    assert "".join(f"{percent}," for _, _, percent, _ in shown) == "0,50,100,"
+    assert [bar.count("#") / len(bar) for _, bar, _, _ in shown] == [0, 0.5, 1]
+    assert [bool(left) for *_, left in shown] == [False, True, False]
     paper.figure4([30], 1, rng=rng, reading=COARSE)
     assert capsys.readouterr() == ("", "")
 
@@ -146,10 +152,31 @@ def test_the_likelihood_is_that_of_independent_normal_sequences():
     assert paper.dots_log_likelihood(model, *dots) == pytest.approx(expected, rel=1e-10)
 
 
+def test_the_error_of_our_own_mean_is_shared_by_all_sequences():
+    model = Structure(
+        np.log([[0.1, 0.2], [0.3, 0.4], [0.5, 0.6]]),
+        np.array([[0.02, 0.01], [0.01, 0.03]]),
+        np.array([[0.05, -0.01], [-0.01, 0.04]]),
+        draws=7,
+    )
+    dots = 0.1 * synthetic(np.random.default_rng(3), model.between, model.within, 5, 3)
+    S = np.block([[model.between + (i == j) * model.within for j in range(3)] for i in range(3)])
+    rounding = np.diag(STEP**2 / 12 / np.exp(2 * model.mean.ravel()))
+    # One big Gaussian of all dots: S of its own for each sequence, S / 7 of the mean in common.
+    joint = np.kron(np.eye(5), S + rounding) + np.kron(np.ones((5, 5)), S / 7)
+    expected = multivariate_normal.logpdf(
+        np.log(dots.transpose(2, 1, 0)).ravel(),
+        np.tile(model.mean.ravel(), 5),
+        joint,
+    )
+    assert paper.dots_log_likelihood(model, *dots) == pytest.approx(expected, rel=1e-10)
+
+
 def test_of_two_readings_the_one_that_made_the_dots_scores_higher():
     levels = [12, 28]
-    truth, again = run(levels, seed=1), run(levels, seed=3)
-    other = run(levels, seed=2, shared=False)
+    # Twelve sequences are enough: the scores are a hundred nats apart, their intervals some tens.
+    truth, again = run(levels, seed=1), run(levels, 12, seed=3)
+    other = run(levels, 12, seed=2, shared=False)
     dots = paper.PublishedFigure4(paper.NOISE_LEVELS, *np.full((2, 31, 20), np.nan))
     dots.position[levels], dots.velocity[levels] = truth.position, truth.velocity
     scores = [paper.figure4_score(r, dots, rng=np.random.default_rng(4)) for r in (again, other)]
@@ -174,7 +201,8 @@ def test_the_saved_scores_are_those_of_all_readings_and_what_the_seed_gives():
     assert all(low <= high for _, _, low, high in scored)
     stored = json.loads((DATA / "ourfigure4_readings.json").read_text())
     assert stored["levels"] == list(paper.SCORED_LEVELS)
-    reading = paper.SWEEP_READINGS[0]
+    reading = paper.SWEEP_READINGS[1]  # a static one: the search is several times faster
+    assert reading.likelihood == "static"
     again = paper.figure4(
         paper.SCORED_LEVELS,
         stored["draws"],

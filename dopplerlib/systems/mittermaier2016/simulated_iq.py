@@ -1,0 +1,103 @@
+"""A recording of six modules that never existed: IQ samples of Table 2's target, with its truth.
+
+The files ``data/mittermaier2016/simulated_iq*`` are what `write_simulated_iq` writes.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from ... import _checks
+from ...signal.recording import Recording, read_sigmf, write_sigmf
+from .end_to_end import Baseband, received
+from .published import DATA, scenario
+
+# Everything that the recording depends on, beside the scenario.
+SIMULATED = {"seed": 20160907, "fs": 2000.0, "snr_db": 27.0, "amplitude": 0.4, "truth_step": 0.02}
+_NAME = "simulated_iq"
+_HEAD = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
+
+
+def simulated_recording():
+    """Simulate the recording from its seed.
+
+    Returns
+    -------
+    recording : Recording
+        Six channels of one second, with the modules' faults in them (`FAULTS`).
+    time : ndarray, shape (K,)
+        Times in s from the first sample.
+    truth : ndarray, shape (K, 6)
+        True states there.
+    """
+    s = scenario()
+    rng = np.random.default_rng(SIMULATED["seed"])
+    iq = received(1, rng=rng, fs=SIMULATED["fs"], snr_db=SIMULATED["snr_db"], factor=1)
+    carrier = 299_792_458.0 / s.array.wavelength
+    time = np.arange(round(s.time[-1] / SIMULATED["truth_step"]) + 1) * SIMULATED["truth_step"]
+    truth = np.tile(s.x0, (len(time), 1))
+    truth[:, :3] += time[:, None] * s.x0[3:]
+    return Recording(SIMULATED["amplitude"] * iq.x[0], SIMULATED["fs"], carrier), time, truth
+
+
+def write_simulated_iq(folder):
+    """Write the recording as SigMF and its truth as CSV.
+
+    Parameters
+    ----------
+    folder : path-like
+        Where to write ``simulated_iq.sigmf-meta``, ``simulated_iq.sigmf-data`` and
+        ``simulated_iq_truth.csv``. Older ones are replaced.
+
+    Returns
+    -------
+    list of Path
+        The three files.
+    """
+    folder = Path(folder)
+    recording, time, truth = simulated_recording()
+    description = (
+        "Simulated, not measured: six CW modules on a ring and the target of Table 2 of "
+        "doi:10.5194/ars-14-39-2016. See README.md."
+    )
+    meta = write_sigmf(folder / _NAME, recording, "int16", description)
+    rows = np.column_stack([time, truth])
+    lines = [_HEAD, *(",".join(f"{value:.6f}" for value in row) for row in rows)]
+    table = folder / f"{_NAME}_truth.csv"
+    table.write_bytes(("\n".join(lines) + "\n").encode())
+    return [meta, folder / f"{_NAME}.sigmf-data", table]
+
+
+def read_simulated_iq(folder=DATA):
+    """Read the recording and its truth.
+
+    Parameters
+    ----------
+    folder : path-like
+        Where the three files are.
+
+    Returns
+    -------
+    iq : Baseband
+        Samples with the leading axis ``runs`` of length 1, as `track_iq` takes them.
+    time : ndarray, shape (K,)
+        Times in s from the first sample.
+    truth : ndarray, shape (K, 6)
+        True states there.
+
+    Raises
+    ------
+    ValueError
+        If the recording is not sound, or its wavelength is not that of the scenario.
+    """
+    folder = Path(folder)
+    recording = read_sigmf(folder / f"{_NAME}.sigmf-meta")
+    array = scenario().array
+    if not np.isclose(recording.wavelength, array.wavelength, rtol=1e-6):
+        raise ValueError(
+            f"the recording must have the wavelength {array.wavelength} m, "
+            f"got {recording.wavelength}"
+        )
+    table = np.genfromtxt(folder / f"{_NAME}_truth.csv", delimiter=",", skip_header=1)
+    iq = Baseband(_checks.finite_complex("x", recording.x)[None], recording.fs, array)
+    return iq, table[:, 0], table[:, 1:]

@@ -1,0 +1,57 @@
+"""Valarmathi et al.: a velocity from the Doppler shift, with a fixed or an adaptive window, fused.
+
+Valarmathi, Emmanuel and Christopher: Doppler information optimization through fusion algorithms.
+"""
+
+from .algorithms import ALGORITHMS, AlgorithmRuns, run_algorithms, snr_sweep
+from .claims import evidence
+from .doppler_filter import FilteredDoppler, doppler_filter, measurement_variance
+from .filters import VelocityTrack, filter_velocity
+from .modern import (
+    error_correlation,
+    fusion_errors,
+    fusion_summary,
+    fusions,
+    honesty,
+    merged_doppler,
+    supposed_world,
+)
+from .noise import residual_variance, updated_residual
+from .published import DATA, VelocityPath, chosen, stated, velocity_path
+from .window_law import best_window, law_exponents, law_rmse, linear_cost
+from .windows import WindowTable, choose_window, cumulative_error, window_table
+
+__all__ = [
+    "ALGORITHMS",
+    "DATA",
+    "AlgorithmRuns",
+    "FilteredDoppler",
+    "VelocityPath",
+    "VelocityTrack",
+    "WindowTable",
+    "best_window",
+    "choose_window",
+    "chosen",
+    "cumulative_error",
+    "doppler_filter",
+    "error_correlation",
+    "evidence",
+    "filter_velocity",
+    "fusion_errors",
+    "fusion_summary",
+    "fusions",
+    "honesty",
+    "law_exponents",
+    "law_rmse",
+    "linear_cost",
+    "measurement_variance",
+    "merged_doppler",
+    "residual_variance",
+    "run_algorithms",
+    "snr_sweep",
+    "stated",
+    "supposed_world",
+    "updated_residual",
+    "velocity_path",
+    "window_table",
+]

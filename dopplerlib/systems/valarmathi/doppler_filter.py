@@ -1,0 +1,146 @@
+"""The Doppler filter of the document: a velocity from every window, at every sample."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ... import _checks
+from ...signal.laws import crlb_frequency_std
+from .published import chosen, stated
+
+
+@dataclass(frozen=True)
+class FilteredDoppler:
+    """Velocities from windows of several lengths, which all end with the same sample.
+
+    Attributes
+    ----------
+    windows : ndarray of int, shape (W,)
+        Lengths in samples.
+    first : int
+        Sample with which the first windows end.
+    v : ndarray, shape (W, ..., K)
+        Measured velocities in m/s, one per sample.
+    snr_db : ndarray, shape (W, ..., K)
+        Signal-to-noise ratios that the spectra show, in dB.
+    """
+
+    windows: np.ndarray
+    first: int
+    v: np.ndarray
+    snr_db: np.ndarray
+
+    @property
+    def delays(self):
+        """How long before the last sample the middle of each window is, in s, shape (W,)."""
+        return (self.windows - 1) / 2 * stated().T
+
+
+def doppler_filter(x, windows=None, first=None):
+    """Return what the document's Doppler filter makes of IQ samples.
+
+    A transform of the last samples, padded with zeros, at every sample; its highest bin from zero
+    to the sampling rate, for targets that approach; the vertex of the parabola through the
+    magnitudes of this bin and its neighbors; and the velocity that this frequency belongs to.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples at the interval T of the document.
+    windows : sequence of int, optional
+        Lengths in samples; all of `chosen` if None.
+    first : int, optional
+        Sample with which the first windows end; that of `chosen` if None.
+
+    Returns
+    -------
+    FilteredDoppler
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, or a window is longer than the transform or reaches back beyond
+        the first sample.
+
+    Notes
+    -----
+    Eqs 1 to 6 of the document, read as `dopplerlib.signal.interpolation.parabolic`: with bins
+    this close, its three highest are neighbors, and the frequency is the vertex and no root. The
+    signal-to-noise ratio is that of `dopplerlib.signal.sliding.DopplerRecord`.
+    """
+    own, T = chosen(), stated().T
+    x = _checks.finite_complex("x", x, (None,))
+    windows = np.array(own.windows if windows is None else windows)
+    first = own.first if first is None else _checks.whole_number("first", first)
+    n = x.shape[-1]
+    if not (3 <= windows.min() and windows.max() <= min(first + 1, own.nfft) and first < n):
+        raise ValueError(
+            f"windows must be from 3 to min(first + 1, {own.nfft}) samples long and first one of "
+            f"the {n} samples, got {windows.tolist()} and {first}"
+        )
+    rows = x.reshape(-1, n)
+    place, power = _peaks(rows, windows, first, own.nfft)
+    energy = np.zeros((len(rows), n + 1))
+    np.cumsum(rows.real**2 + rows.imag**2, axis=-1, out=energy[:, 1:])
+    snr = power  # to save memory, in place
+    for w, window in enumerate(windows):
+        amp2 = power[w] / window**2
+        last = np.arange(first + 1, n + 1)
+        mean = (energy[:, last] - energy[:, last - window]) / window
+        # A noise of a billionth is less than single precision can tell from none.
+        noise = np.maximum(mean - amp2, 1e-9 * mean) * (window / (window - 1.5))
+        snr[w] = np.maximum(amp2 / noise - 1.5 / window, 1e-3)
+    shape = (len(windows), *x.shape[:-1], n - first)
+    v = place * (own.wavelength / (2 * own.nfft * T))
+    return FilteredDoppler(windows, first, v.reshape(shape), 10 * np.log10(snr).reshape(shape))
+
+
+def measurement_variance(windows, snr_db):
+    """Return the variance of a measured velocity if it reaches the Cramér-Rao bound.
+
+    Parameters
+    ----------
+    windows : array_like of int, shape (...)
+        Lengths in samples.
+    snr_db : array_like, broadcast to (...)
+        Signal-to-noise ratio of a sample in dB.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        In (m/s)^2.
+    """
+    std = crlb_frequency_std(10 ** (np.asarray(snr_db) / 10), windows, 1 / stated().T)
+    return (chosen().wavelength / 2 * std) ** 2
+
+
+def _peaks(rows, windows, first, nfft):
+    """Return places in bins and powers (W, R, K), the records shared among the processors."""
+    from ._sliding_kernel import compiled  # here: numba takes half a second to load
+
+    turn = np.outer(np.arange(nfft), np.arange(nfft)) % nfft
+    wave = np.exp(-2j * np.pi * np.arange(nfft) / nfft)[turn]
+    wave_re, wave_im = wave.real.astype(np.float32), wave.imag.astype(np.float32)
+    re, im = rows.real.astype(np.float32), rows.imag.astype(np.float32)
+    place = np.empty((len(windows), len(rows), rows.shape[1] - first))
+    power = np.empty_like(place)
+
+    def work(part):
+        compiled(
+            re[part], im[part], wave_re, wave_im, windows, first, place[:, part], power[:, part]
+        )
+
+    share(work, len(rows))
+    return place, power
+
+
+def share(work, count):
+    """Call a function of a slice of `count` records or runs, some at a time."""
+    parts = min(os.cpu_count() or 1, 4)
+    edges = np.linspace(0, count, parts + 1).astype(int)
+    slices = [slice(a, b) for a, b in pairwise(edges) if b > a]
+    with ThreadPoolExecutor(parts) as pool:
+        list(pool.map(work, slices))

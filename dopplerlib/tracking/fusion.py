@@ -1,0 +1,215 @@
+"""Two estimates of one state made into one, and what each way takes for granted."""
+
+import numpy as np
+
+from .. import _checks
+
+
+def fuse_state_vectors(x1, P1, x2, P2, P12=None):
+    """Fuse two estimates by their covariances, with or without what they have in common.
+
+    Parameters
+    ----------
+    x1, x2 : array_like, shape (..., n)
+        Estimates of the same state.
+    P1, P2 : array_like, shape (..., n, n)
+        Their covariances. Leading axes of all arguments broadcast against one another.
+    P12 : array_like, shape (..., n, n), optional
+        Covariance of the error of the first with that of the second; none if None.
+
+    Returns
+    -------
+    x : ndarray, shape (..., n)
+    P : ndarray, shape (..., n, n)
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite, or `P1` or `P2` is not positive definite.
+
+    Notes
+    -----
+    With A = P1 - P12, the estimate is x1 + A (P1 + P2 - P12 - P12')^-1 (x2 - x1): Bar-Shalom and
+    Campo (1986). Without P12 it is Eqs 15 to 17 of Valarmathi et al., right only if the errors are
+    independent. Those of two filters that follow one target never are: both miss its maneuvers.
+
+    Examples
+    --------
+    Two equal estimates, taken for independent, and known to have half of their variance in common:
+
+    >>> x, P = fuse_state_vectors([0.0], [[1.0]], [2.0], [[1.0]])
+    >>> x.tolist(), P.tolist()
+    ([1.0], [[0.5]])
+    >>> fuse_state_vectors([0.0], [[1.0]], [2.0], [[1.0]], [[0.5]])[1].tolist()
+    [[0.75]]
+    """
+    x1, P1, x2, P2 = _estimates(x1, P1, x2, P2)
+    n = x1.shape[-1]
+    P12 = np.zeros((n, n)) if P12 is None else _checks.finite("P12", P12, (n, n))
+    P21 = np.swapaxes(P12, -1, -2)
+    A = P1 - P12
+    W = np.swapaxes(np.linalg.solve(P1 + P2 - P12 - P21, np.swapaxes(A, -1, -2)), -1, -2)
+    x = x1 + (W @ (x2 - x1)[..., None])[..., 0]
+    return x, P1 - W @ np.swapaxes(A, -1, -2)
+
+
+def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
+    """Return the covariance between the errors of two filters after one more cycle.
+
+    Parameters
+    ----------
+    P12 : array_like, shape (..., n, n)
+        Covariance between the errors after the last cycle.
+    F, Q : array_like, shape (..., n, n)
+        Transition matrix, and covariance of the process noise that both have in common.
+    K1, K2 : array_like, shape (..., n, m)
+        Gains of the two filters.
+    H1, H2 : array_like, shape (..., m, n)
+        Their measurement matrices.
+
+    Returns
+    -------
+    ndarray, shape (..., n, n)
+        (I - K1 H1) (F P12 F' + Q) (I - K2 H2)'.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit or a value is not finite.
+
+    Notes
+    -----
+    Bar-Shalom (1981). The noise of the measurements is independent; common is the target.
+
+    Examples
+    --------
+    >>> cross_covariance_step([[0.0]], [[1]], [[2.0]], [[0.5]], [[1]], [[0.5]], [[1]]).tolist()
+    [[0.5]]
+    """
+    P12 = _checks.finite("P12", P12, (None, None))
+    n = P12.shape[-1]
+    F, Q = _checks.finite("F", F, (n, n)), _checks.finite("Q", Q, (n, n))
+    keep = []
+    for K_name, K, H_name, H in (("K1", K1, "H1", H1), ("K2", K2, "H2", H2)):
+        K = _checks.finite(K_name, K, (n, None))
+        H = _checks.finite(H_name, H, (K.shape[-1], n))
+        keep.append(np.eye(n) - K @ H)
+    return keep[0] @ (F @ P12 @ np.swapaxes(F, -1, -2) + Q) @ np.swapaxes(keep[1], -1, -2)
+
+
+def covariance_intersection(x1, P1, x2, P2, w=None):
+    """Fuse two estimates of which nobody knows what they have in common.
+
+    Parameters
+    ----------
+    x1, x2 : array_like, shape (..., n)
+        Estimates of the same state.
+    P1, P2 : array_like, shape (..., n, n)
+        Their covariances. Leading axes of all arguments broadcast against one another.
+    w : array_like, shape (...), optional
+        Weight of the first, from 0 to 1; where the determinant of the result is least if None,
+        one half if it is the same everywhere.
+
+    Returns
+    -------
+    x : ndarray, shape (..., n)
+    P : ndarray, shape (..., n, n)
+        Not smaller than the true covariance, whatever the errors have in common, provided that
+        neither `P1` nor `P2` is.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite, `P1` or `P2` is not positive definite, or
+        `w` is not from 0 to 1.
+
+    Notes
+    -----
+    P^-1 = w P1^-1 + (1 - w) P2^-1: Julier and Uhlmann (1997). The logarithm of the determinant
+    of P^-1 is concave in w, so bisection of its slope finds the best one.
+
+    Examples
+    --------
+    Each knows one of two coordinates:
+
+    >>> x, P = covariance_intersection([1, 0], np.diag([1, 9.0]), [0, 1], np.diag([9.0, 1]), 0.5)
+    >>> x.round(2).tolist(), P.round(2).tolist()
+    ([0.9, 0.9], [[1.8, 0.0], [0.0, 1.8]])
+    """
+    x1, P1, x2, P2 = _estimates(x1, P1, x2, P2)
+    I1, I2 = np.linalg.inv(P1), np.linalg.inv(P2)
+    if w is None:
+        w = _best_weight(P1, P2)
+    else:
+        w = _checks.finite("w", w)
+        if ((w < 0) | (w > 1)).any():
+            raise ValueError(f"w must be from 0 to 1, got {w}")
+    w = w[..., None, None]
+    P = np.linalg.inv(w * I1 + (1 - w) * I2)
+    information = w * (I1 @ x1[..., None]) + (1 - w) * (I2 @ x2[..., None])
+    return (P @ information)[..., 0], P
+
+
+def fuse_measurements(z1, R1, z2, R2):
+    """Return the weighted mean of two independent measurements of the same thing.
+
+    Parameters
+    ----------
+    z1, z2 : array_like, shape (..., m)
+        Measurements.
+    R1, R2 : array_like, shape (..., m, m)
+        Covariances of their noise. Leading axes of all arguments broadcast against one another.
+
+    Returns
+    -------
+    z : ndarray, shape (..., m)
+    R : ndarray, shape (..., m, m)
+        For one Kalman filter behind both sensors: it does as well as one that takes both
+        measurements.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite, or `R1` or `R2` is not positive definite.
+
+    Notes
+    -----
+    Bar-Shalom, Li and Kirubarajan (2001). What errors of filters have in common, errors of
+    measurements have not.
+
+    Examples
+    --------
+    >>> z, R = fuse_measurements([1.0], [[1.0]], [4.0], [[2.0]])
+    >>> z.round(3).tolist(), R.round(3).tolist()
+    ([2.0], [[0.667]])
+    """
+    return fuse_state_vectors(z1, R1, z2, R2)
+
+
+def _estimates(x1, P1, x2, P2):
+    x1 = _checks.finite("x1", x1, (None,))
+    n = x1.shape[-1]
+    x2 = _checks.finite("x2", x2, (n,))
+    P1, P2 = _checks.covariance("P1", P1, n), _checks.covariance("P2", P2, n)
+    leads = (x1.shape[:-1], P1.shape[:-2], x2.shape[:-1], P2.shape[:-2])
+    try:
+        np.broadcast_shapes(*leads)
+    except ValueError:
+        raise ValueError(f"leading axes must broadcast, got {leads} of x1, P1, x2, P2") from None
+    return x1, P1, x2, P2
+
+
+def _best_weight(P1, P2):
+    """Return the weights (...) with the least determinant of the intersection."""
+    # In the basis where P1 is the identity, P2^-1 has the eigenvalues r: the slope of
+    # sum log(w + (1 - w) r) falls from w = 0 to w = 1.
+    L = np.linalg.cholesky(P1)
+    half = np.linalg.solve(L, P2)
+    r = 1 / np.linalg.eigvalsh(np.linalg.solve(L, np.swapaxes(half, -1, -2)))
+    low, high = np.zeros(r.shape[:-1]), np.ones(r.shape[:-1])
+    for _ in range(52):
+        w = (low + high) / 2
+        rising = np.sum((1 - r) / (w[..., None] + (1 - w[..., None]) * r), axis=-1) > 0
+        low, high = np.where(rising, w, low), np.where(rising, high, w)
+    # Of two equal covariances no weight is better: the middle then, not what rounding prefers.
+    return np.where(np.abs(1 - r).max(axis=-1) < 1e-9, 0.5, (low + high) / 2)
