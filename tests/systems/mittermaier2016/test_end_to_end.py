@@ -12,7 +12,7 @@ from scipy.stats import binom, chi2
 
 from dopplerlib import crlb, doppler_shift
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016 import end_to_end
+from dopplerlib.systems.mittermaier2016._hypotheses import quarters
 
 S = paper.scenario()
 SPEED = np.linalg.norm(S.x0[3:])
@@ -226,7 +226,7 @@ def test_tracks_are_not_better_than_the_bound(found):
 
 def test_the_search_of_quarters_covers_the_room():
     lower, upper = paper.start_box()
-    boxes = end_to_end._quarters(lower, upper)
+    boxes = quarters(lower, upper)
     volume = sum(np.prod(high - low) for low, high in boxes)
     assert volume == pytest.approx(np.prod(upper - lower))
     assert len({(low[1] == 0, low[2] == 0) for low, _ in boxes}) == 4

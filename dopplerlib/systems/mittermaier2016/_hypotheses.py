@@ -1,0 +1,70 @@
+"""Hypotheses about the start of the whole chain, and the filters that begin with them."""
+
+import numpy as np
+
+from ...estimation.extended_kalman import ekf
+from ...estimation.maximum_likelihood import ml_start
+from ...model.doppler import doppler_jacobian
+
+# Hypotheses whose chi-square is higher than the least by this have a likelihood of 3e-7 of it.
+CARRIED = 30.0
+
+
+def quarters(lower, upper):
+    """Return the four quarters of a box by the signs of y and z."""
+    boxes = []
+    for right in (False, True):
+        for up in (False, True):
+            low, high = lower.copy(), upper.copy()
+            for axis, positive in ((1, right), (2, up)):
+                (low if positive else high)[axis] = 0.0
+            boxes.append((low, high))
+    return boxes
+
+
+def hypotheses(z, std, iq, T, apart, boxes):
+    """Return states (runs, H, 6), their chi-squares (runs, H), and one deviation for each run.
+
+    All shifts of a record get the same weight, so the search does not depend on how large it is.
+    """
+    early = slice((z.shape[1] - 1) % apart, None, apart)
+    variance = np.mean(std[:, early] ** 2, axis=(1, 2))
+    found = [ml_start(z[:, early], iq.array, 1.0, apart * T, box, at="last") for box in boxes]
+    states, costs = [s.x for s in found], [s.cost for s in found]
+    if len(boxes) == 1:
+        states, costs = [*states, found[0].second_x], [*costs, found[0].second_cost]
+    return np.stack(states, axis=1), np.stack(costs, axis=1) / variance[:, None], variance**0.5
+
+
+def filters(z, std, weights, array, T, used, apart, sigma_p, states, costs):
+    """Return x, P, nis and score of the filters that start from the hypotheses of one run."""
+    shape = (len(states), 1 + len(z) - used)
+    x, P = np.full((*shape, 6), np.nan), np.full((*shape, 6, 6), np.nan)
+    nis, score = np.full((shape[0], shape[1] - 1), np.nan), np.full(shape, np.inf)
+    for i in np.flatnonzero(costs < np.nanmin(costs) + CARRIED):
+        covariance = start_covariance(states[i], array, weights, apart * T)
+        if covariance is None:
+            continue
+        x[i, 0], P[i, 0], score[i] = states[i], covariance, costs[i]
+        if shape[1] > 1:
+            t = ekf(z[used:], array, states[i], covariance, T, sigma_p, std[used:], workers=1)
+            x[i, 1:], P[i, 1:], nis[i] = t.x, t.P, t.nis
+            score[i, 1:] += np.cumsum(t.nis + np.linalg.slogdet(t.S)[1])
+    return x, P, nis, score
+
+
+def start_covariance(x, array, std, T):
+    """Return the covariance of a state at the last sample by its Fisher information, or None."""
+    if not np.isfinite(x).all():
+        return None
+    back = -T * np.arange(len(std))[::-1]
+    F = np.tile(np.eye(6), (len(std), 1, 1))
+    F[:, :3, 3:] = back[:, None, None] * np.eye(3)
+    slopes = doppler_jacobian(np.einsum("kij,j->ki", F, x), array) @ F / std[..., None]
+    slopes = slopes.reshape(-1, 6)
+    scale = np.linalg.norm(slopes, axis=0)
+    _, w, vt = np.linalg.svd(slopes / scale, full_matrices=False)
+    if w[-1] < 1e-6 * w[0]:
+        return None
+    root = vt.T / w / scale[:, None]
+    return root @ root.T
