@@ -25,10 +25,8 @@ from .published import (
     start_settings,
 )
 from .student_filter import student_ekf, student_jacobian
-from .table import IntervalTable
 
 __all__ = [
-    "IntervalTable",
     "PostMortem",
     "StartSettings",
     "consistent_runs",

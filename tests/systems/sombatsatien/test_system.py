@@ -230,19 +230,6 @@ def test_the_bound_is_reached_by_least_squares_from_the_truth(plane):
     assert rms == pytest.approx(student.final_bound(plane), rel=0.15)
 
 
-def test_a_table_shows_two_digits_and_powers_of_ten():
-    table = student.IntervalTable({"a": {"q": [123456.0] * 20}, "b": {"q": [0.0123] * 20}})
-    assert table._repr_markdown_().splitlines() == [
-        "|  | q |",
-        "| --- | --- |",
-        "| a | 1.2·10⁵<br>(1.2·10⁵ to 1.2·10⁵) |",
-        "| b | 0.012<br>(0.012 to 0.012) |",
-    ]
-    numbers = {"c": {"q": [280.0] * 20}, "d": {"q": [6.04] * 20}, "e": {"q": [15.2] * 20}}
-    cells = student.IntervalTable(numbers)._repr_markdown_()
-    assert all(text in cells for text in ("280<", "6.0<", "15<"))
-
-
 def test_a_long_start_uses_a_tenth_of_the_record_and_brings_its_covariance():
     long = student.post_mortem(
         16, rng=np.random.default_rng(8), jacobian="derived", plane="x", start="long"

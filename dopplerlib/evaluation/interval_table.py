@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...evaluation.intervals import quantile_interval
+from .intervals import quantile_interval
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
