@@ -4,21 +4,17 @@ import numpy as np
 
 from ... import _checks
 from ...estimation.linear_kalman import _predict, _update
-from ...estimation.radial_velocity import radial_velocity_terms, radial_velocity_update
+from ...estimation.radial_velocity import radial_velocity_update
 from ...evaluation.intervals import share_interval
 from ...evaluation.verdicts import Draws, Readings
-from ...model.range_rate import range_rate, range_rate_jacobian
-from ...model.ranging_noise import detection_probability
+from ._claims_formulas import settings_and_formulas
 from .measures import departure, distance_error, over_runs, usable_range
 from .one_radar import filter_radar
-from .published import deviations, quoted, scenario, settings, snr
-from .scene import maneuver_track, radars, simulate, straight_track
+from .published import quoted, scenario, settings
+from .scene import simulate
 from .stand_in import WALKS, walk
 from .two_radars import (
-    error_area,
     filter_then_triangulate,
-    one_scan_bound,
-    polar_jacobian,
     raw_positions,
     triangulate,
 )
@@ -48,60 +44,6 @@ def evidence(*, rng, runs=200):
         **one_radar(runs, simulated, resampled),
         **two_radars(runs, simulated, resampled),
         **real_radars(2 * runs, walked),
-    }
-
-
-def settings_and_formulas():
-    """Return the evidence that follows from the printed settings and formulas alone.
-
-    Returns
-    -------
-    dict
-    """
-    s, q = scenario(), quoted()
-    n = s["noise"]
-    code, text = settings("code"), settings("text")
-    ends = [track(np.array([s["tracks"]["duration"]]))[0, :2]
-            for track in (straight_track, maneuver_track)]  # fmt: skip
-    corner = np.abs(error_area(snr_db=s["error_area"]["snr"]) - s["error_area"]["position"])
-    front = s["error_area"]["position"]
-    wavelengths = {
-        "c / f": n["speed_of_light"] / n["frequency"],
-        "code": q["noise"]["wavelength_code"],
-        "printed": q["noise"]["wavelength_printed"],
-    }
-    velocities = {name: one / (2 * n["integration"]) for name, one in wavelengths.items()}
-    at = np.hypot(*(np.array(front) - radars()).T)
-    return {
-        "range-variance": float(code.R(1.0)[0]),
-        "process-noise": np.diag(code.Q),
-        "wavelength": wavelengths["c / f"],
-        "velocity-resolution": Readings(velocities),
-        "range-resolution": n["speed_of_light"] * 10.0 ** q["noise"]["pulse_exponent_printed"] / 2,
-        "snr-at-one": float(snr(1.0)),
-        "speed": float(np.hypot(*s["tracks"]["velocity"])),
-        "straight-end": float(np.hypot(*ends[0])),
-        "maneuver-end": ends[1],
-        "maneuver-distance": float(np.hypot(*ends[1])),
-        "both-axes": float(np.hypot(q["range"]["axis"], q["range"]["axis"])),
-        "error-area": corner.max(axis=0),
-        "error-area-snr": float(snr(at).mean()),
-        "shared-integration": 1 - s["tracks"]["T"] / n["integration"],
-        "detection": float(
-            detection_probability(snr(q["range"]["fused"]), s["detection"]["false_alarm"])
-        ),
-        "R2-approaches": float(range_rate(straight_track([0.0]), radars())[0, 1, 1]),
-        "R1-distance": _range_at(0, q["departure"]["R1_time"]),
-        "R2-distance": _range_at(1, q["departure"]["R2_time"]),
-        "real-range": q["range"]["real_conclusion"],
-        "gate-grows": gate_growth(text),
-        "directional-cosine": _printed_cosine(),
-        "extra-variance": _extra_variance_ratio(),
-        "pseudo-innovation": _printed_pseudo_innovation(),
-        "table-3-2": _printed_angle_innovation(),
-        "difference-bias": _difference_bias(),
-        "baseline": float(np.sqrt(_across(s["real"]["baseline"]) / _across(None))),
-        "closest-radar": _influence_ratio(),
     }
 
 
@@ -273,98 +215,11 @@ def real_radars(runs, rng):
     }
 
 
-def gate_growth(own, early=2, late=450):
-    """Return how much the half-width of the printed gate grows while the covariance settles.
-
-    Parameters
-    ----------
-    own : Settings
-        Settings of the filter.
-    early, late : int
-        Scans that are compared; between them the last hundred have no measurement.
-
-    Returns
-    -------
-    float
-        Half-width at `late` over that at `early`.
-
-    Notes
-    -----
-    Eqs 4.3 and 4.6: an innovation passes if its square over S is below c sigma over S.
-    """
-    c, sigma = (scenario()["filter"][name] for name in ("c", "sigma_range"))
-    F = np.array([[1.0, own.T], [0.0, 1.0]])
-    P, widths = own.P0, []
-    for k in range(late + 1):
-        _, P = _predict(np.zeros(2), P, F, own.Q)
-        S = P[0, 0] + own.R(1.0)[0]
-        widths.append(np.sqrt(c * sigma / S * S))
-        if k < late - 100:
-            _, P, _, _ = _update(np.zeros(2), P, np.zeros(2), np.eye(2), np.diag(own.R(1.0)))
-    return round(float(widths[late] / widths[early]), 9)
-
-
 def _guess(w):
     """Return the start of the thesis's code for one radar, or the truth of the walk for two."""
     if len(w.sensors) == 1:
         return np.array(scenario()["real"]["guess"])
     return w.ranges[:, 0].mean(axis=0)
-
-
-def _range_at(radar, time):
-    return float(range_rate(straight_track([time]), radars())[0, radar, 0])
-
-
-def _across(baseline):
-    return one_scan_bound(scenario()["error_area"]["position"], baseline)[0, 0]
-
-
-def _influence_ratio():
-    """Return how far a position follows the far radar's range, over how far the near one's."""
-    p = np.array([*quoted()["range"]["compared"], 0.0, 0.0])
-    follows = np.linalg.inv(range_rate_jacobian(p, radars())[:, 0, :2])
-    far, near = np.linalg.norm(follows, axis=0)
-    return round(float(far / near), 9)
-
-
-def _printed_cosine():
-    Y = np.array(quoted()["range"]["compared"])
-    return float(np.linalg.norm(np.sqrt(Y @ Y) * Y))
-
-
-def _example():
-    """Return a state in the plane and its covariance, in the middle of the straight track."""
-    x = straight_track([scenario()["tracks"]["duration"] / 2])[0]
-    return x, np.diag([0.2, 0.1, 0.05, 0.1]) ** 2
-
-
-def _extra_variance_ratio():
-    x, P = _example()
-    right, printed = (
-        radial_velocity_terms(x, P, 1.0, variance=name).R[0, 0] - 1.0
-        for name in ("corrected", "printed")
-    )
-    return float(printed / right)
-
-
-def _printed_pseudo_innovation():
-    """Return the innovation of Eq 3.25 for a measurement that is exactly as predicted."""
-    x, P = _example()
-    terms = radial_velocity_terms(x, P, 1.0)
-    return float(terms.predicted[0] - np.trace(terms.C))
-
-
-def _printed_angle_innovation():
-    """Return alpha - H x, the innovation of Table 3.2 for an angle exactly as predicted."""
-    x, _ = _example()
-    return float(np.arctan2(x[1], x[0]) - polar_jacobian(x)[1] @ x)
-
-
-def _difference_bias():
-    """Return the error of a rate from differences at the first scan, in deviations of its noise."""
-    T = scenario()["tracks"]["T"]
-    first, second = range_rate(straight_track([0.0, T]), radars()[:1])[:, 0]
-    return float(((second[0] - first[0]) / T - first[1]) / deviations(first[0])[1])
 
 
 def _largest_step_difference(z, own):

@@ -8,7 +8,7 @@ import pytest
 from dopplerlib import kf
 from dopplerlib.estimation.radial_velocity import radial_velocity_update
 from dopplerlib.systems import asheim2015 as thesis
-from dopplerlib.systems.asheim2015.claims import gate_growth
+from dopplerlib.systems.asheim2015._claims_formulas import gate_growth
 
 F = np.array([[1, 0.1], [0, 1]])
 
