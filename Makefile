@@ -52,11 +52,11 @@ format: $(VENV)/.ready  ## repair what can be repaired of style and formatting
 
 .PHONY: notebooks
 notebooks: $(VENV)/.ready  ## execute the chapters in place
-	$(PY) tools/notebooks.py
+	$(PY) -m tools.notebooks
 
 .PHONY: notebooks-check
 notebooks-check: $(VENV)/.ready  ## execute the chapters again and compare every byte
-	$(PY) tools/notebooks.py --check
+	$(PY) -m tools.notebooks --check
 
 .PHONY: record
 record: $(VENV)/.ready  ## execute the chapters again and write the page on reproducibility
@@ -68,15 +68,19 @@ kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
 
 .PHONY: figure4
 figure4: $(VENV)/.ready  ## run the study of Fig 4 in full: some twenty seconds
-	$(PY) tools/figure4.py study
+	$(PY) -m tools.figure4 study
 
 .PHONY: figure4-readings
 figure4-readings: $(VENV)/.ready  ## score every reading of Fig 4: some minutes
-	$(PY) tools/figure4.py readings
+	$(PY) -m tools.figure4 readings
+
+.PHONY: recording
+recording: $(VENV)/.ready  ## write the simulated recording of six sensors again
+	$(PY) -m tools.simulated_recording
 
 .PHONY: seeds
 seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depend on the draw
-	$(PY) tools/seeds.py
+	$(PY) -m tools.seeds
 
 .PHONY: bench
 bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement

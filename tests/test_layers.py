@@ -9,6 +9,7 @@ LIBRARY = Path(__file__).resolve().parents[1] / "dopplerlib"
 
 ORDER = [
     "_checks",
+    "_progress",
     "kernels",
     "model",
     "signal",

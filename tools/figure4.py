@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dopplerlib._progress import progress_bar
 from dopplerlib.systems.mittermaier2016 import (
     SCORED_LEVELS,
     SWEEP_READINGS,
@@ -18,7 +19,7 @@ from dopplerlib.systems.mittermaier2016 import (
     figure4_score,
     published_figure4,
 )
-from dopplerlib.systems.mittermaier2016.noise_sweep import progress_bar
+from tools.files import write
 
 DATA = Path(__file__).resolve().parent.parent / "data" / "mittermaier2016"
 SEED = 4
@@ -67,13 +68,6 @@ def score(reading, seed):
     values = figure4_score(result, published_figure4(), rng=np.random.default_rng(seed))
     rounded = (round(value, 1) for value in values)
     return asdict(reading) | dict(zip(("score", "low", "high"), rounded, strict=True))
-
-
-def write(path, text):
-    """Replace the file in one step: an interrupted run leaves the old one."""
-    temporary = path.with_suffix(".tmp")
-    temporary.write_text(text, encoding="utf-8", newline="\n")
-    temporary.replace(path)
 
 
 def main():

@@ -17,6 +17,8 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
+from tools.files import write
+
 ROOT = Path(__file__).resolve().parent.parent
 FIXED = {
     "PYTHONHASHSEED": "0",
@@ -92,13 +94,6 @@ def execute(path, timeout):
                 raise ChapterError(f"cell {number} ({cell.id}) wrote to stderr:\n{output.text}")
     nbformat.validate(nb)
     return nbformat.writes(nb, indent=1).rstrip("\n") + "\n"
-
-
-def write(path, text):
-    """Replace the file in one step: an interrupted run leaves the old one."""
-    temporary = path.with_suffix(".ipynb.tmp")
-    temporary.write_text(text, encoding="utf8", newline="\n")
-    temporary.replace(path)
 
 
 def differences(old, new):

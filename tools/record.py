@@ -19,6 +19,7 @@ from pathlib import Path
 
 from dopplerlib.evaluation.claims import VERDICTS
 from tools import seeds as judged
+from tools.files import write
 from tools.notebooks import ROOT, chapters, differences, execute
 
 PAGE = ROOT / "book" / "reproducibility.md"
@@ -208,9 +209,7 @@ def main(argv=None):
         measured = {RAN: where_it_ran(), TIMES: run_times(), SEEDS: seeds_tried()}
     if None in measured.values():
         return 1
-    temporary = PAGE.with_suffix(".tmp")
-    temporary.write_text(page(measured), encoding="utf8", newline="\n")
-    temporary.replace(PAGE)
+    write(PAGE, page(measured))
     return 0
 
 

@@ -1,12 +1,11 @@
 """How the error of the start grows with the noise (Fig 4), under any reading of the text."""
 
-import sys
-import time
 from dataclasses import dataclass
 
 import numpy as np
 
 from ... import _checks
+from ..._progress import progress_bar
 from ...estimation.maximum_likelihood import ml_start
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_shift
@@ -286,39 +285,3 @@ def _box(reading):
 def _sizes(error):
     """Return the lengths of both parts of the error, stacked first."""
     return np.stack([np.linalg.norm(error[..., part], axis=-1) for part in _PARTS])
-
-
-def progress_bar(items, label, wanted=True):
-    """Yield items and show on standard error how many are done and how long the rest takes.
-
-    Parameters
-    ----------
-    items : sequence
-        Each of them should take about the same time.
-    label : str
-        What stands before the bar.
-    wanted : bool
-        Whether there is a bar.
-
-    Yields
-    ------
-    object
-        The items.
-    """
-    start = time.monotonic()
-    for done, item in enumerate(items):
-        if wanted:
-            spent = time.monotonic() - start
-            left = f"{spent / done * (len(items) - done):.0f} s left" if done else ""
-            _draw(label, done / len(items), left)
-        yield item
-    if wanted:
-        _draw(label, 1.0, "")
-        sys.stderr.write("\n")
-
-
-def _draw(label, share, left):
-    full = round(30 * share)
-    # Spaces at the end cover what a longer line has left.
-    sys.stderr.write(f"\r{label} [{'#' * full}{'.' * (30 - full)}] {share:4.0%} {left:12}")
-    sys.stderr.flush()
