@@ -3,10 +3,12 @@
 import numpy as np
 
 from ... import _checks
-from .measures import distance_error, over_runs, usable_range
+from .in_the_plane import central_filter
+from .measures import distance_error
 from .published import scenario, settings
+from .resampling import over_runs, usable_interval
 from .scene import simulate, straight_track
-from .two_radars import central_filter, filter_then_triangulate
+from .two_radars import filter_then_triangulate
 
 
 def usable_ranges(records, tracks, *, rng):
@@ -27,10 +29,8 @@ def usable_ranges(records, tracks, *, rng):
         In m; infinite if the error stays below the limit.
     """
     return {
-        label: over_runs(
-            lambda e: usable_range(e, records.time, records.distance),
-            distance_error(track.p, records.truth),
-            rng=rng,
+        label: usable_interval(
+            distance_error(track.p, records.truth), records.time, records.distance, rng=rng
         )
         for label, track in tracks.items()
     }
