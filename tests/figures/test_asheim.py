@@ -83,7 +83,7 @@ def test_departures_that_never_come_are_not_counted():
         asheim.triangulated(TIME, *[np.ones((50, 2))] * 3, SENSORS, ((0, 1), (0, 1))),
         asheim_beyond.consistency(TIME, {"a": {"b": TIME + 1}}, [(0.9, 1.1)]),
         asheim_beyond.reach({"a": dict.fromkeys("xyz", Estimate(5.0, 4.9, np.inf))}),
-        asheim_beyond.offsets(TIME[:2], {"a": [Estimate(1.0, 0.9, 1.1)] * 2}),
+        asheim_beyond.sweep(TIME[:2], {"a": [Estimate(1.0, 0.9, 1.1)] * 2}, "delay in s"),
     ],
 )  # fmt: skip
 def test_every_panel_has_units_or_is_a_diagram(figure):

@@ -4,7 +4,7 @@ Tracking a person using UWB pulse Doppler radar, master's thesis, NTNU Trondheim
 """
 
 from .expected_error import error_area, one_scan_bound
-from .experiments import late_radar, usable_ranges
+from .experiments import baseline_sweep, late_radar, refused_scans, usable_ranges
 from .in_the_plane import central_filter, table_3_2
 from .many_detections import managed_tracks, pda_radar
 from .measures import departure, distance_error, rmse, usable_range, usable_range_of_each
@@ -29,6 +29,7 @@ __all__ = [
     "Records",
     "Settings",
     "Walk",
+    "baseline_sweep",
     "central_filter",
     "departure",
     "deviations",
@@ -46,6 +47,7 @@ __all__ = [
     "quoted",
     "radars",
     "raw_positions",
+    "refused_scans",
     "resolutions",
     "rmse",
     "rmse_interval",
