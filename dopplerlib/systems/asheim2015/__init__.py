@@ -9,7 +9,16 @@ from .in_the_plane import central_filter, table_3_2
 from .many_detections import managed_tracks, pda_radar
 from .measures import departure, distance_error, rmse, usable_range, usable_range_of_each
 from .one_radar import RadarTrack, filter_radar
-from .published import Settings, deviations, quoted, resolutions, scenario, settings, snr
+from .published import (
+    Settings,
+    audit,
+    deviations,
+    quoted,
+    resolutions,
+    scenario,
+    settings,
+    snr,
+)
 from .resampling import over_runs, rmse_interval, rmse_ratio, usable_interval, usable_ratio
 from .scene import (
     Records,
@@ -29,6 +38,7 @@ __all__ = [
     "Records",
     "Settings",
     "Walk",
+    "audit",
     "baseline_sweep",
     "central_filter",
     "departure",
