@@ -28,7 +28,7 @@ def error_areas(p, sensors, rings, areas, titles):
     angle = np.linspace(0, np.pi, 2000)
     unit = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     with styled(7.0, 3.1) as figure:
-        axes = figure.subplots(1, 1 + len(rings))
+        axes = figure.subplots(1, 1 + len(rings), width_ratios=[1.7] + [1] * len(rings))
         for ax, (half, corners), title in zip(
             axes, [(rings[0], areas[0]), *zip(rings, areas, strict=True)], titles, strict=True
         ):

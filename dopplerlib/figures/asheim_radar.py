@@ -34,7 +34,7 @@ def one_range(time, truth, measured, estimates, zoom):
             ):
                 ax.plot(time[at], d[at], color=color, ls=ls, label=label)
             ax.set(xlabel="time in s", ylabel="range in m")
-        whole.axvspan(*zoom, color=BOUND, alpha=0.15, lw=0)
+        whole.axvspan(*zoom, color=BOUND, alpha=0.25, lw=0)
         whole.legend()
         return figure
 
