@@ -190,6 +190,8 @@ def gains(doppler, snr_db, path):
         for way, errors in fusion_errors(
             fusions(doppler, snr_db, delayed=delayed, hop=hop), path
         ).items():
+            if hop > 1 and way not in ("one sensor", "measurement fusion"):
+                continue  # as without
             name = ", ".join(told + [way] * (way != "one sensor"))
             rows[name or "one sensor, fixed window"] = errors
     start = rows["one sensor, fixed window"]

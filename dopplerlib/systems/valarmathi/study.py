@@ -7,7 +7,7 @@ import numpy as np
 from ... import _checks
 from ...evaluation.intervals import Estimate, share_interval
 from .algorithms import ALGORITHMS, run_algorithms
-from .published import DATA, PATHS, chosen
+from .published import DATA, PATHS, chosen, stated
 from .windows import window_table
 
 SEED = 3
@@ -37,12 +37,36 @@ class Study:
     snrs_db: np.ndarray
     measures: dict
 
+    @property
+    def runs(self):
+        """Number of runs of each algorithm in each cell."""
+        return self.measures["whole"].shape[-1]
+
     def of(self, measure, path, algorithm):
         """Return one measure of one algorithm on one path, shape (S, runs)."""
         _checks.one_of("measure", measure, tuple(self.measures))
         _checks.one_of("algorithm", algorithm, tuple(ALGORITHMS))
         place = self.paths.index(_checks.one_of("path", path, self.paths))
         return self.measures[measure][place, :, algorithm - 1]
+
+    def summary(self, path, snr_db):
+        """Return what `AlgorithmRuns.summary` would, of one cell."""
+        levels = self.snrs_db.tolist()
+        j = levels.index(_checks.one_of("snr_db", float(snr_db), levels))
+        half = (chosen().fixed_window - 1) / 2 * stated().T
+        columns = {
+            "maneuver (m/s)": ("maneuver", 1.0),
+            "constant velocity (m/s)": ("constant", 1.0),
+            "whole record (m/s)": ("whole", 1.0),
+            "delay (half windows)": ("delay", 1e3 * half),
+        }
+        return {
+            name: {
+                title: self.of(measure, path, number)[j] / unit
+                for title, (measure, unit) in columns.items()
+            }
+            for number, name in ALGORITHMS.items()
+        }
 
     def cells(self):
         """Return what `cell_measures` would, by path and signal-to-noise ratio."""

@@ -69,6 +69,11 @@ def test_a_cell_comes_out_again_alone(table, cell):
     assert (rows == saved).mean() > 0.9
     fixed = [0, 2, 5]
     np.testing.assert_allclose(rows[fixed].astype(float), saved[fixed].astype(float), rtol=2e-3)
+    summary = system.saved_study().summary(PATHS[int(cell[0]) - 1], float(cell[1]))
+    for name, columns in again.summary().items():
+        if name[0] in "136":
+            for title, values in columns.items():
+                np.testing.assert_allclose(summary[name][title][:runs], values, rtol=2e-3)
 
 
 def test_the_number_of_failed_runs_comes_out_again(table):
