@@ -106,6 +106,6 @@ def read_deviations(path):
 def _row(one):
     badge = f'<span class="verdict deviation-{one.kind}">{one.kind}</span>'
     paper = f"{badge} {one.where}.<br>{one.paper}"
-    link = f'<a href="{one.page}.html#cell-{one.cell}">{one.page}</a>'
+    link = f'<a href="{one.page}.html#cell-{one.cell}">{one.page.replace("_", " ")}</a>'
     cells = paper, f"{one.choice}<br>{link}"
     return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"

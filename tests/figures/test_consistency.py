@@ -1,6 +1,5 @@
 """The figures of consistency show the data that they are given, with units on every axis."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.patches import Ellipse
@@ -9,6 +8,7 @@ from scipy.stats import chi2
 
 from dopplerlib.figures import consistency as draw
 from dopplerlib.systems.mittermaier2016 import Consistency
+from tests.drawn import check_figures, check_legends, lines
 
 INTERVAL = (1.237, 14.449)
 RNG = np.random.default_rng(81)
@@ -48,29 +48,8 @@ WITHOUT_UNIT = {
 }  # fmt: skip
 
 
-def lines(ax):
-    """Return {label: line} of the lines that have one."""
-    return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
-
-
-def test_every_figure_function_of_the_module_is_tested_here():
-    public = [
-        name
-        for name, value in vars(draw).items()
-        if getattr(value, "__module__", "") == draw.__name__ and not name.startswith("_")
-    ]
-    assert sorted(public) == sorted(NAMES)
-
-
-def test_no_figure_stays_with_pyplot(figures):
-    assert len(figures) == len(NAMES)
-    assert plt.get_fignums() == []
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_figure_fits_the_page_and_can_be_drawn(figures, name):
-    assert figures[name].get_figwidth() <= 7
-    figures[name].canvas.draw()
+def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
+    check_figures(draw, figures)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -86,12 +65,7 @@ def test_every_axis_has_a_label_that_says_its_unit(figures, name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_curve_is_in_a_legend(figures, name):
-    figure = figures[name]
-    legends = [*figure.legends, *(ax.get_legend() for ax in figure.axes if ax.get_legend())]
-    told = {text.get_text() for legend in legends for text in legend.get_texts()}
-    drawn = {label for ax in figure.axes for label in ax.get_legend_handles_labels()[1]}
-    assert drawn
-    assert drawn == told
+    check_legends(figures[name])
 
 
 def test_the_densities_are_drawn_over_histograms_of_area_one_and_the_interval_is_filled(figures):

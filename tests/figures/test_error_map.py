@@ -1,12 +1,12 @@
 """The figures of the error maps show the data that they are given, with units on every axis."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from dopplerlib import RadarArray
 from dopplerlib.figures import error_map as draw
+from tests.drawn import check_figures
 
 AXIS = np.linspace(-0.9, 0.9, 7)
 MAP = np.abs(AXIS)[:, None] + 0.01 * (AXIS + 1)
@@ -29,20 +29,8 @@ def figures():
 NAMES = ["error_maps", "shares", "line_profiles"]
 
 
-def test_every_figure_function_of_the_module_is_tested_here():
-    public = [
-        name
-        for name, value in vars(draw).items()
-        if getattr(value, "__module__", "") == draw.__name__ and not name.startswith("_")
-    ]
-    assert sorted(public) == sorted(NAMES)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_figure_fits_the_page_is_drawn_and_does_not_stay_with_pyplot(figures, name):
-    assert figures[name].get_figwidth() <= 7
-    figures[name].canvas.draw()
-    assert plt.get_fignums() == []
+def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
+    check_figures(draw, figures)
 
 
 @pytest.mark.parametrize("name", NAMES)

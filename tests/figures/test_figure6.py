@@ -3,13 +3,13 @@
 import json
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
 from dopplerlib import chi2_interval
 from dopplerlib.figures import figure6 as draw
 from dopplerlib.systems import mittermaier2016 as paper
+from tests.drawn import check_figures, check_legends, lines
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "mittermaier2016"
 RUNS, RUN = 20, 3
@@ -38,9 +38,7 @@ def array():
 
 @pytest.fixture(scope="module")
 def figures(result, gated, published, array):
-    """Return every figure by name, and how many pyplot had open before and after."""
-    before = plt.get_fignums()
-    figures = {
+    return {
         "scene": draw.scene(result, published, array, RUN),
         "errors": draw.errors(result, published, RUN),
         "error_bands": draw.error_bands(result, published),
@@ -50,18 +48,12 @@ def figures(result, gated, published, array):
         ),
         "skipped_counts": draw.skipped_counts(gated, published),
     }
-    return figures, before, plt.get_fignums()
 
 
 def axes(figures, name):
     """Return the axes of a figure; a figure of one has it alone."""
-    found = figures[0][name].axes
+    found = figures[name].axes
     return found[0] if len(found) == 1 else found
-
-
-def lines(ax):
-    """Return {label: line} of the lines that have one."""
-    return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
 
 
 def assert_shows(line, x, y):
@@ -72,32 +64,15 @@ def assert_shows(line, x, y):
 NAMES = ["scene", "errors", "error_bands", "nis", "nis_averages", "skipped_counts"]
 
 
-def test_every_figure_function_of_the_module_is_tested_here():
-    public = [
-        name
-        for name, value in vars(draw).items()
-        if getattr(value, "__module__", "") == draw.__name__ and not name.startswith("_")
-    ]
-    assert sorted(public) == sorted(NAMES)
-
-
-def test_no_figure_stays_with_pyplot(figures):
-    _, before, after = figures
-    assert after == before == []
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_figure_fits_the_page_and_can_be_drawn(figures, name):
-    figure = figures[0][name]
-    assert figure.get_figwidth() <= 7
-    figure.canvas.draw()
+def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
+    check_figures(draw, figures)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_axis_has_a_label_that_says_its_unit(figures, name):
     without_unit = {"NIS", "NIS averaged over one run", "share of runs below"}
     counts = {"samples below the gate", "samples above the gate"}
-    for ax in figures[0][name].axes:
+    for ax in figures[name].axes:
         labels = [ax.get_ylabel()]
         if ax.get_subplotspec().is_last_row():  # axes above share it
             labels.append(ax.get_xlabel())
@@ -111,12 +86,7 @@ def test_every_axis_has_a_label_that_says_its_unit(figures, name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_curve_is_in_a_legend(figures, name):
-    figure = figures[0][name]
-    legends = [*figure.legends, *(ax.get_legend() for ax in figure.axes if ax.get_legend())]
-    told = {text.get_text() for legend in legends for text in legend.get_texts()}
-    drawn = {label for ax in figure.axes for label in ax.get_legend_handles_labels()[1]}
-    assert drawn
-    assert drawn == told
+    check_legends(figures[name])
 
 
 def test_the_scene_shows_sensors_path_and_both_estimates(figures, result, published, array):

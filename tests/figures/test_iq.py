@@ -3,11 +3,7 @@
 import numpy as np
 
 from dopplerlib.figures import iq, iq_study
-
-
-def lines(ax):
-    """Return {label: line} of the curves with a label of their own."""
-    return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
+from tests.drawn import lines
 
 
 def test_the_chain_names_every_stage_and_what_it_gives():

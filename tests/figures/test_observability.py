@@ -1,6 +1,5 @@
 """The figures of observability show the data that they are given, with units on every axis."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.patches import Ellipse
@@ -9,6 +8,7 @@ from numpy.testing import assert_allclose
 from dopplerlib import RadarArray, ring_family
 from dopplerlib.figures import observability as draw
 from dopplerlib.figures.scene import project
+from tests.drawn import check_figures, lines
 
 RING, LINE = RadarArray.ring(6, 0.2), RadarArray.linear(5, 0.4)
 STATE = np.array([0.833, 0.111, 0.092, -0.75, -0.125, -0.018])
@@ -52,25 +52,8 @@ NAMES = ["likelihood_ridges", "blind_family", "bounds_by_change", "estimates", "
          "bounds_over_time"]  # fmt: skip
 
 
-def lines(ax):
-    """Return {label: line} of the lines that have one."""
-    return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
-
-
-def test_every_figure_function_of_the_module_is_tested_here():
-    public = [
-        name
-        for name, value in vars(draw).items()
-        if getattr(value, "__module__", "") == draw.__name__ and not name.startswith("_")
-    ]
-    assert sorted(public) == sorted(NAMES)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_figure_fits_the_page_is_drawn_and_does_not_stay_with_pyplot(figures, name):
-    assert figures[name].get_figwidth() <= 7
-    figures[name].canvas.draw()
-    assert plt.get_fignums() == []
+def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
+    check_figures(draw, figures)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,11 +1,11 @@
 """The figures of the start show the data that they are given, with units on every axis."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from dopplerlib.figures import start as draw
+from tests.drawn import check_figures
 
 ACROSS, UP = np.linspace(-1, 1, 21), np.linspace(0, 1, 11)
 COST = 7 + (10 * (ACROSS - 0.2)) ** 2 + (10 * (UP[:, None] - 0.5)) ** 2
@@ -31,20 +31,8 @@ def figures():
 NAMES = ["reduced_cost", "error_distributions", "errors_by_samples"]
 
 
-def test_every_figure_function_of_the_module_is_tested_here():
-    public = [
-        name
-        for name, value in vars(draw).items()
-        if getattr(value, "__module__", "") == draw.__name__ and not name.startswith("_")
-    ]
-    assert sorted(public) == sorted(NAMES)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_figure_fits_the_page_is_drawn_and_does_not_stay_with_pyplot(figures, name):
-    assert figures[name].get_figwidth() <= 7
-    figures[name].canvas.draw()
-    assert plt.get_fignums() == []
+def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
+    check_figures(draw, figures)
 
 
 @pytest.mark.parametrize("name", NAMES)
