@@ -5,6 +5,7 @@ import pytest
 
 from dopplerlib.figures import valarmathi as draw
 from dopplerlib.systems import valarmathi as system
+from tests.drawn import check_figures, check_legends
 
 
 @pytest.fixture(scope="module")
@@ -83,3 +84,19 @@ def test_every_path_and_both_correlations_have_their_line():
     np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), several[1].v)
     (ax,) = draw.correlation(np.array([1.0, 0.1]), np.array([1.0, 0.2])).axes
     np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), [1.0, 0.2])
+
+
+def test_every_figure_fits_the_page_and_its_legend_names_what_is_drawn(table, result):
+    shares = system.failed_shares()
+    figures = {
+        "paths": draw.paths([result.path]),
+        "window_error": draw.window_error(table, 30.0),
+        "velocities": draw.velocities([result]),
+        "cumulative_errors": draw.cumulative_errors([result], [[(1, 1), (3, 1)]], ncols=1),
+        "sweep": draw.sweep(system.saved_study(), 5.0, (15.0, 35.0)),
+        "failures": draw.failures(shares, 0.05),
+        "correlation": draw.correlation(np.ones(3), np.ones(3)),
+    }
+    check_figures(draw, figures)
+    for name in set(figures) - {"window_error"}:  # its lines are named where they end
+        check_legends(figures[name])
