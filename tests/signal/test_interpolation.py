@@ -10,6 +10,7 @@ from scipy.signal import periodogram
 from scipy.stats import chi2
 
 from dopplerlib.signal.interpolation import (
+    _kappa,
     aboutanios_mulgrew,
     candan,
     jacobsen,
@@ -109,6 +110,30 @@ def test_a_parabola_in_logarithms_is_exact_for_a_gaussian():
     assert parabolic(x, FS, scale="log") == pytest.approx(f, abs=1e-6 * BIN)
 
 
+def kappa_slope(x):
+    """Return the derivative of the function kappa of Quinn (1997)."""
+    return (3 * x + 2) / (2 * (3 * x**2 + 6 * x + 1))
+
+
+def quinn2_ratio(d):
+    """Return the variance of Quinn's second estimate over the bound, for a long window.
+
+    To first order in the noise of three bins, of which the neighbors are d / (d + 1) and
+    d / (d - 1) times the highest one.
+    """
+    a, b = d / (d + 1), d / (d - 1)
+    left = (0.5 - 2 * d * kappa_slope(d**2)) / (1 - a) ** 2
+    right = -(0.5 + 2 * d * kappa_slope(d**2)) / (1 - b) ** 2
+    noise = left**2 * (1 + a**2) + right**2 * (1 + b**2) + 2 * left * right * a * b
+    return noise / (2 * np.sinc(d) ** 2) / (6 / (2 * np.pi) ** 2)
+
+
+def test_kappa_has_the_slope_for_which_it_was_made():
+    """By a complex step: exact to rounding."""
+    x = np.linspace(0, 2, 21)
+    np.testing.assert_allclose(_kappa(x + 1e-30j).imag / 1e-30, kappa_slope(x), rtol=1e-14)
+
+
 @pytest.mark.parametrize(
     ("estimator", "fraction", "ratio"),
     [
@@ -119,6 +144,10 @@ def test_a_parabola_in_logarithms_is_exact_for_a_gaussian():
         # Quinn (1994): the same on the bin, and pi^4 / 96 half way, for one neighbor.
         (quinn1, 0.5, np.pi**4 / 96),
         # Aboutanios and Mulgrew (2005): pi^4 / 96 after the iteration, wherever the tone is.
+        # Quinn (1997): from his weights, 1.30 and 1.01.
+        (quinn2, 0.0, np.pi**2 / 6),
+        (quinn2, 0.25, quinn2_ratio(0.25)),
+        (quinn2, 0.5, quinn2_ratio(0.5)),
         (aboutanios_mulgrew, 0.0, np.pi**4 / 96),
         (aboutanios_mulgrew, 0.3, np.pi**4 / 96),
         (aboutanios_mulgrew, 0.5, np.pi**4 / 96),
@@ -163,6 +192,15 @@ def test_a_longer_lag_sharpens_the_pulse_pair_and_narrows_what_is_unambiguous():
     alias = pulse_pair(x[0], FS, lag=50)  # around zero: FS / 50 = 20 Hz apart
     assert abs(alias) < 10
     assert (f[0] - alias) % 20 == pytest.approx(0, abs=1) or (f[0] - alias) % 20 > 19
+
+
+@pytest.mark.parametrize("lag", [1, 2, 7, 50])
+@pytest.mark.parametrize("middle", [-300.0, 0.0, 118.0, 999.0])
+def test_the_pulse_pair_finds_the_tone_that_lies_around_the_middle_of_its_band(lag, middle):
+    """Anywhere within fs / (2 lag) of it, without noise."""
+    f = middle + np.array([-0.49, -0.1, 0.3, 0.49]) * FS / lag
+    x = tone(f, FS, N, None, rng=np.random.default_rng(9))
+    np.testing.assert_allclose(pulse_pair(x, FS, (middle - 20, middle + 20), lag), f, atol=1e-9)
 
 
 @pytest.mark.parametrize("estimator", ALL, ids=lambda e: e.__name__)
