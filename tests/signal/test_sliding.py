@@ -76,11 +76,11 @@ def test_the_measured_ratio_has_no_bias_in_short_windows_either(estimator, n):
     0.4 % more for what is of second order in the noise. Left in, the noise at the peak would make
     the ratio 3.8 and 1.5 % too large, and the mean of 1 / noise_variance 5.7 and 2.1 %.
     """
-    runs, snr, fs = 40000, 2.0, 1.0
+    runs, snr, fs = 16000, 2.0, 1.0
     x = tone(np.full(runs, 4.3 / n), fs, n, 10 * np.log10(snr), rng=np.random.default_rng(6))
     d = sliding_doppler(x + 5 if estimator is ml_frequency_dc else x, fs, n, n, estimator)
     spread = norm.isf(FALSE_ALARM / 8) * d.snr.std() / np.sqrt(runs)
-    assert spread + 0.004 * snr < 0.014 * snr
+    assert spread + 0.004 * snr < {20: 0.02, 50: 0.014}[n] * snr
     assert abs(d.snr.mean() - snr) < spread + 0.004 * snr
 
 
