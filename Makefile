@@ -90,6 +90,10 @@ seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depe
 bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement
 	$(BENCH)/bin/python benchmarks/ekf.py
 
+.PHONY: bench-iq
+bench-iq: $(VENV)/.ready  ## time from IQ to Doppler: a second of six sensors
+	$(PY) benchmarks/iq.py
+
 .PHONY: lock
 lock: $(UV)  ## renew environment.lock and benchmarks/requirements.lock
 	$(UV) pip compile $(LOCK_OPTIONS) requirements.in -o environment.lock
