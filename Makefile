@@ -78,6 +78,10 @@ figure4-readings: $(VENV)/.ready  ## score every reading of Fig 4: some minutes
 recording: $(VENV)/.ready  ## write the simulated recording of six sensors again
 	$(PY) -m tools.simulated_recording
 
+.PHONY: iq-race
+iq-race: $(VENV)/.ready  ## compare every frequency estimator with the bound: some minutes
+	$(PY) -m tools.iq_race
+
 .PHONY: seeds
 seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depend on the draw
 	$(PY) -m tools.seeds
