@@ -1,4 +1,4 @@
-"""Make data/mittermaier2016/iq_race.csv: every frequency estimator against the bound.
+"""Make data/mittermaier2016/iq_race.json: every frequency estimator against the bound.
 
 It takes some minutes on one processor. The file appears when it is complete; an interrupted race
 goes on at the level where it stopped.
@@ -12,19 +12,32 @@ from dopplerlib._progress import progress_bar
 from dopplerlib.systems.mittermaier2016 import race
 from tools.files import write
 
-PATH = Path(__file__).resolve().parent.parent / "data" / "mittermaier2016" / "iq_race.csv"
-HEAD = ["snr_db", "estimator", "windows", "outliers", "ratio", "low", "high"]
+PATH = Path(__file__).resolve().parent.parent / "data" / "mittermaier2016" / "iq_race.json"
+COLUMNS = ("outliers", "ratio", "low", "high")
 
 
-def rows_of(snr_db, names=tuple(race.RACE)):
-    """Return the rows of one level, as they stand in the file."""
+def level(snr_db, names=tuple(race.RACE)):
+    """Return what the file holds of one level: by name the outliers, the ratio and its interval."""
     x, f = race.race_windows(snr_db)
-    rows = []
+    result = {}
     for name in names:
         ratio, outliers = race.race_cell(name, x, f, snr_db)
-        numbers = (f"{v:.5g}" for v in (ratio.value, ratio.low, ratio.high))
-        rows.append([str(snr_db), name, str(len(f)), str(outliers), *numbers])
-    return rows
+        ends = (float(f"{v:.5g}") for v in (ratio.value, ratio.low, ratio.high))
+        result[name] = [outliers, *ends]
+    return result
+
+
+def text_of(levels):
+    """Return the text of the file."""
+    head = {"seed": race.RACE_SEED, "windows": race.RACE_WINDOWS, "snr_db": race.RACE_LEVELS}
+    parts = [f'  "{name}": {json.dumps(value)}' for name, value in head.items()]
+    for k, column in enumerate(COLUMNS):
+        rows = (
+            f'    "{name}": {json.dumps([found[name][k] for found in levels])}'
+            for name in race.RACE
+        )
+        parts.append(f'  "{column}": {{\n' + ",\n".join(rows) + "\n  }")
+    return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
 def main():
@@ -33,11 +46,9 @@ def main():
     part = PATH.with_suffix(".part")
     done = json.loads(part.read_text(encoding="utf8")) if part.exists() else []
     for snr_db in progress_bar(race.RACE_LEVELS[len(done) :], "levels"):
-        done.append(rows_of(snr_db))
+        done.append(level(snr_db))
         write(part, json.dumps(done))
-    lines = [HEAD, *(row for rows in done for row in rows)]
-    # A name may hold a comma.
-    write(PATH, "".join(",".join(f'"{v}"' if "," in v else v for v in r) + "\n" for r in lines))
+    write(PATH, text_of(done))
     part.unlink()
 
 

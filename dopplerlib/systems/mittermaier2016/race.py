@@ -1,6 +1,6 @@
 """Section 3.2 of Mittermaier et al. (2016): is the bound attained? Every estimator against it."""
 
-import csv
+import json
 from dataclasses import dataclass
 from functools import partial
 
@@ -200,14 +200,16 @@ def saved_race():
     -----
     Made by ``make iq-race``; see the README of data/mittermaier2016.
     """
-    with (DATA / "iq_race.csv").open(encoding="utf8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    levels = np.array(RACE_LEVELS, dtype=float)
-    ratio, outliers = {name: [] for name in RACE}, {name: [] for name in RACE}
-    for row in rows:
-        name, windows = row["estimator"], int(row["windows"])
-        hits = np.arange(windows) < int(row["outliers"])
-        ratio[name].append(Estimate(*(float(row[c]) for c in ("ratio", "low", "high"))))
-        outliers[name].append(share_interval(hits))
+    saved = json.loads((DATA / "iq_race.json").read_text(encoding="utf8"))
+    levels, windows = np.array(saved["snr_db"], dtype=float), saved["windows"]
+    ends = [saved[end] for end in ("ratio", "low", "high")]
+    ratio = {
+        name: [Estimate(*at) for at in zip(*(end[name] for end in ends), strict=True)]
+        for name in saved["ratio"]
+    }
+    outliers = {
+        name: [share_interval(np.arange(windows) < count) for count in counts]
+        for name, counts in saved["outliers"].items()
+    }
     bound = crlb_frequency_std(10 ** (levels / 10), RACE_SAMPLES, RACE_FS)
     return Race(levels, bound, windows, ratio, outliers)

@@ -1,13 +1,19 @@
 """The saved race of the estimators: made again in part, and against laws that are not its own."""
 
+import json
+
 import numpy as np
 import pytest
 
 from dopplerlib.evaluation.intervals import Estimate, mean_interval, share_interval
-from dopplerlib.signal.laws import outlier_probability
+from dopplerlib.signal.laws import (
+    crlb_frequency_std,
+    crlb_frequency_std_dc,
+    outlier_probability,
+)
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems.mittermaier2016.race import RACE_FS, RACE_SAMPLES, RACE_WINDOWS
-from tools.iq_race import PATH, rows_of
+from tools.iq_race import COLUMNS, PATH, level
 
 
 @pytest.fixture(scope="module")
@@ -17,10 +23,11 @@ def race():
 
 def test_cells_of_the_saved_race_can_be_made_again():
     """Near the thresholds of both: some of the estimates are outliers, and some are not."""
-    saved = PATH.read_text(encoding="utf8").splitlines()
-    for row in rows_of(-7, ["maximum likelihood", "Kay"]):
-        assert ",".join(row) in saved
-        assert 0 < int(row[3]) < RACE_WINDOWS
+    saved = json.loads(PATH.read_text(encoding="utf8"))
+    k = saved["snr_db"].index(-7)
+    for name, found in level(-7, ["maximum likelihood", "Kay"]).items():
+        assert found == [saved[column][name][k] for column in COLUMNS]
+        assert 0 < found[0] < RACE_WINDOWS
 
 
 def test_the_race_has_every_estimator_at_every_level(race):
@@ -29,7 +36,7 @@ def test_the_race_has_every_estimator_at_every_level(race):
         assert len(race.ratio[name]) == len(race.outliers[name]) == len(paper.RACE_LEVELS)
         assert all(e.low <= e.value <= e.high for e in race.ratio[name])
     assert race.windows == RACE_WINDOWS
-    assert len(PATH.read_text().splitlines()) == 1 + len(paper.RACE) * len(paper.RACE_LEVELS)
+    assert tuple(race.snr_db) == paper.RACE_LEVELS
 
 
 def test_maximum_likelihood_attains_the_bound_from_zero_decibels_on(race):
@@ -39,6 +46,15 @@ def test_maximum_likelihood_attains_the_bound_from_zero_decibels_on(race):
     """
     for k in range(race.at(0), len(race.snr_db)):
         assert race.ratio["maximum likelihood"][k].value == pytest.approx(1, abs=0.025)
+
+
+def test_beside_a_constant_the_estimator_attains_the_bound_of_that(race):
+    """The tones lie anywhere from 50 to 350 Hz; 2.5 % are some four deviations, as above."""
+    f = np.linspace(50, 350, 3001)
+    dc = crlb_frequency_std_dc(f, 1.0, RACE_SAMPLES, RACE_FS)
+    expected = np.sqrt(np.mean(dc**2)) / crlb_frequency_std(1.0, RACE_SAMPLES, RACE_FS)
+    for k in range(race.at(0), len(race.snr_db)):
+        assert race.ratio["beside a constant"][k].value == pytest.approx(expected, rel=0.025)
 
 
 def test_no_estimator_is_better_than_the_bound_where_it_has_no_outliers(race):
