@@ -82,6 +82,10 @@ valarmathi-study: $(VENV)/.ready  ## run all algorithms at all noise levels of V
 recording: $(VENV)/.ready  ## write the simulated recording of six sensors again
 	$(PY) -m tools.simulated_recording
 
+.PHONY: iq-race
+iq-race: $(VENV)/.ready  ## compare every frequency estimator with the bound: some minutes
+	$(PY) -m tools.iq_race
+
 .PHONY: seeds
 seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depend on the draw
 	$(PY) -m tools.seeds
