@@ -78,6 +78,10 @@ figure4-readings: $(VENV)/.ready  ## score every reading of Fig 4: some minutes
 macaveiu-study: $(VENV)/.ready  ## run the scheme of Macaveiu et al. on many records: ten minutes or so
 	$(PY) -m tools.macaveiu
 
+.PHONY: valarmathi-study
+valarmathi-study: $(VENV)/.ready  ## run all algorithms at all noise levels of Valarmathi: minutes
+	$(PY) -m tools.valarmathi
+
 .PHONY: recording
 recording: $(VENV)/.ready  ## write the simulated recording of six sensors again
 	$(PY) -m tools.simulated_recording
