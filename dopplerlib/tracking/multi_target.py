@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _checks
-from ..estimation.extended_update import ekf_innovation, ekf_update
+from ..estimation.extended_update import _corrected, _innovation
 from .association import gnn_assign
 from .management import CONFIRMED, DELETED
 
@@ -95,30 +95,37 @@ def track_scans(
     from scipy.special import chdtri  # here: it takes longer to load than all the rest
 
     m = _checks.matrix("R", R, (None, None)).shape[0]
+    R = _checks.covariance("R", R, m)
     size = chdtri(m, 1 - _checks.probability("probability", probability))
     F, Q = _checks.finite("F", F), _checks.finite("Q", Q)
     done, alive = [], []
     for number, scan in enumerate(scans):
         z = _checks.finite(f"scans[{number}]", scan, (None, m))
         may_start = np.ones(len(z), bool) if new is None or not len(z) else new(z)
-        assigned = np.full(len(alive), -1)
+        free = np.ones(len(z), bool)
         if alive:
             x = np.stack([track["x"][-1] for track in alive]) @ F.T
             P = F @ np.stack([track["P"][-1] for track in alive]) @ F.T + Q
-            nu, S = ekf_innovation(x[:, None], P[:, None], z, h, H, R, wrap)
-            cost = np.sum(nu * np.linalg.solve(S, nu[..., None])[..., 0], axis=-1)
+            nu, S, J = _innovation(x[:, None], P[:, None], z, h, H, R, wrap)
+            S, J = S[:, 0], np.broadcast_to(J, (len(alive), 1, *J.shape[-2:]))[:, 0]
+            cost = np.sum(nu * np.linalg.solve(S, nu.swapaxes(1, 2)).swapaxes(1, 2), axis=-1)
             cost = np.where(cost <= size, cost, np.inf)
             first = np.array([track["confirmed"][-1] for track in alive])
-            assigned[first] = assign(cost[first], size)
-            free = may_start & ~np.isin(np.arange(len(z)), assigned)
-            assigned[~first] = assign(np.where(free, cost, np.inf)[~first], size)
-            seen = np.full((len(alive), m), np.nan)
-            seen[assigned >= 0] = z[assigned[assigned >= 0]]
-            x, P, _, _ = ekf_update(x, P, seen, h, H, R, wrap)
+            assigned = np.full(len(alive), -1)
+            for some, open_to_them in ((first, True), (~first, may_start)):
+                if some.any():
+                    pairs = np.where(free & open_to_them, cost[some], np.inf)
+                    assigned[some] = assign(pairs, size)
+                    free[assigned[assigned >= 0]] = False
+            seen = assigned >= 0
+            x[seen], P[seen] = _corrected(
+                x[seen], P[seen], nu[seen, assigned[seen]], S[seen], J[seen], R
+            )
             for i, track in enumerate(alive):
                 _extend(track, number, x[i], P[i], assigned[i], manager)
-        left = np.flatnonzero(may_start & ~np.isin(np.arange(len(z)), assigned))
-        begun = [_begin(number, *start(z[i]), i, manager) for i in left]
+        left = np.flatnonzero(may_start & free)
+        states = zip(*start(z[left]), left, strict=True) if len(left) else ()
+        begun = [_begin(number, *state, manager) for state in states]
         done += begun
         alive = [track for track in alive if track["life"].status != DELETED] + begun
     return [_frozen(track) for track in done]
