@@ -77,7 +77,8 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     ------
     ValueError
         If shapes do not fit, a value is not finite (but for a NaN in `z`), `P` is not a covariance
-        (it may be singular), or `R` is not positive definite.
+        (it may be singular), `R` is not positive definite, or `wrap` names a component that the
+        measurement does not have.
 
     Notes
     -----
@@ -98,6 +99,7 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     accept = np.asarray(True if accept is None else accept)
     if accept.dtype != bool:
         raise ValueError(f"accept must be made of booleans, got {accept.dtype}")
+    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 1), "R": (R, 2), "accept": (accept, 0)})
     return _update(x, P, z, h, H, R, wrap, accept)
 
 
@@ -125,6 +127,8 @@ def _innovation(x, P, z, h, H, R, wrap):
     predicted = _checks.finite("h(x)", h(x), (m,))
     J = _checks.finite("H(x)", H(x), (m, x.shape[-1]))
     innovation = z - predicted
+    if not set(wrap) <= set(range(m)):
+        raise ValueError(f"wrap must hold components from 0 to {m - 1}, got {wrap}")
     for i in wrap:
         innovation[..., i] = (innovation[..., i] + np.pi) % (2 * np.pi) - np.pi
     return innovation, J @ P @ np.swapaxes(J, -1, -2) + R, J
