@@ -45,7 +45,7 @@ def track_scans(
     scans : sequence of ndarray, shape (detections, m)
         Measurements of each scan; their number may vary.
     F, Q : array_like, shape (n, n)
-        Transition matrix and process noise between scans.
+        Transition matrix; covariance of the process noise between two scans.
     h, H : callable
         Measurement function and its Jacobian, see `ekf_update`.
     R : array_like, shape (m, m)
@@ -61,8 +61,8 @@ def track_scans(
     wrap : sequence of int
         Components of the measurement that are angles.
     new : callable, optional
-        Takes measurements (detections, m), returns which of them may start a track or belong to a
-        tentative one; all if None.
+        Takes measurements (detections, m), returns booleans (detections,): which of them may start
+        a track or belong to a tentative one; all if None.
 
     Returns
     -------
@@ -72,7 +72,8 @@ def track_scans(
     Raises
     ------
     ValueError
-        If a scan has another number of components, or an argument is refused by a part.
+        If shapes do not fit, also those that `start`, `h`, `H` and `new` return; a value is not
+        finite; `Q` or `R` is not a covariance; or `probability` is not between 0 and 1.
 
     Notes
     -----
@@ -96,12 +97,14 @@ def track_scans(
 
     m = _checks.matrix("R", R, (None, None)).shape[0]
     R = _checks.covariance("R", R, m)
+    n = _checks.matrix("F", F, (None, None)).shape[0]
+    F = _checks.matrix("F", F, (n, n))
+    Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
     size = chdtri(m, 1 - _checks.probability("probability", probability))
-    F, Q = _checks.finite("F", F), _checks.finite("Q", Q)
     done, alive = [], []
     for number, scan in enumerate(scans):
-        z = _checks.finite(f"scans[{number}]", scan, (None, m))
-        may_start = np.ones(len(z), bool) if new is None or not len(z) else new(z)
+        z = _checks.matrix(f"scans[{number}]", scan, (None, m))
+        may_start = np.ones(len(z), bool) if new is None or not len(z) else _allowed(new(z), len(z))
         free = np.ones(len(z), bool)
         if alive:
             x = np.stack([track["x"][-1] for track in alive]) @ F.T
@@ -124,11 +127,28 @@ def track_scans(
             for i, track in enumerate(alive):
                 _extend(track, number, x[i], P[i], assigned[i], manager)
         left = np.flatnonzero(may_start & free)
-        states = zip(*start(z[left]), left, strict=True) if len(left) else ()
-        begun = [_begin(number, *state, manager) for state in states]
+        x, P = _started(start(z[left]), len(left), n) if len(left) else ((), ())
+        begun = [_begin(number, *state, manager) for state in zip(x, P, left, strict=True)]
         done += begun
         alive = [track for track in alive if track["life"].status != DELETED] + begun
     return [_frozen(track) for track in done]
+
+
+def _allowed(value, detections):
+    value = np.asarray(value)
+    if value.dtype != bool or value.shape != (detections,):
+        raise ValueError(
+            f"new(z) must be made of booleans, of shape {(detections,)}, "
+            f"got {value.dtype} of shape {value.shape}"
+        )
+    return value
+
+
+def _started(states, count, n):
+    x, P = states
+    P = _checks.covariance("start(z)[1]", P, n, definite=False)
+    _checks.check_shape("start(z)[1]", P, (count, n, n))
+    return _checks.finite("start(z)[0]", x, (count, n)), P
 
 
 def _begin(number, x, P, detection, manager):
