@@ -100,13 +100,24 @@ def reflection_points(truth, points=POINTS):
     Returns
     -------
     ndarray, shape (K, points, 4)
-        In a row of `LENGTH` along the heading; all have the velocity of the middle.
+        In a row of `LENGTH` along the heading; all have the velocity of the middle. A target that
+        stands heads where it moved last, or where it will move first; one that never moves, along
+        y.
     """
-    heading = truth[:, 1::2] / np.linalg.norm(truth[:, 1::2], axis=1, keepdims=True)
+    heading = _heading(truth[:, 1::2])
     along = np.linspace(-LENGTH / 2, LENGTH / 2, points) if points > 1 else np.zeros(1)
     states = np.repeat(truth[:, None], points, axis=1)
     states[..., ::2] += along[:, None] * heading[:, None, :]
     return states
+
+
+def _heading(v):
+    speed = np.linalg.norm(v, axis=1)
+    moving = np.flatnonzero(speed > 0)
+    if not len(moving):
+        return np.tile([0.0, 1.0], (len(v), 1))
+    last = np.maximum(np.searchsorted(moving, np.arange(len(v)), side="right") - 1, 0)
+    return v[moving[last]] / speed[moving[last], None]
 
 
 def moves(z):

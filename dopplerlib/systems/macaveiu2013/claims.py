@@ -48,8 +48,19 @@ def _waveforms(rng):
         r, _ = two_tones.fsk_range(*two_tones.fsk([[30.0, v], [55.0, v]]))
         return float(np.abs(r - [30, 55]).min())
 
-    signal = waveforms.noisy(waveforms.rapid_chirps([[60.0, -60.0]]), 0, rng=rng)
-    _, folded = waveforms.strongest(*waveforms.range_doppler_map(signal))
+    def seen(case, chirps=512):
+        signal = waveforms.noisy(waveforms.rapid_chirps(case, chirps), 0, rng=rng)
+        return waveforms.range_doppler_map(signal)
+
+    speed = {
+        f"{chirps} chirps in a measurement": waveforms.strongest(*seen([[60.0, -60.0]], chirps))[1]
+        for chirps in (512, 1024)
+    }
+
+    def shape(case):
+        ranges, rates = waveforms.spread(seen(case)[2])
+        return ranges / rates
+
     return {
         "pulse-rate": s.bandwidth / (256 * 512 / s.T),
         "lfm-ghosts": float(len(pairs) - len(targets)),
@@ -61,8 +72,23 @@ def _waveforms(rng):
                 "a beat shared": quantile_interval([mfsk_off(shared, 1) for _ in range(RUNS)]),
             }
         ),
-        "rapid-unambiguous": folded,
+        "mfsk-time": 1 / _slopes_needed(targets),
+        "rapid-unambiguous": Readings(speed),
+        "profile-car": shape(waveforms.CAR),
+        "profile-pedestrian": shape(waveforms.PEDESTRIAN),
     }
+
+
+def _slopes_needed(targets):
+    """Return how many slopes leave no ghost, at the frequency resolution of one measurement."""
+    s = settings()
+    rows = [waveforms.chirp_relation(a * s.bandwidth / s.T) for a in waveforms.SLOPES]
+    for number in range(2, len(rows) + 1):
+        some = np.stack(rows[:number])
+        _, misfit = waveforms.intersections(some, [targets @ row for row in some])
+        if np.sum(misfit < 0.5 / s.T) == len(targets):
+            return number
+    raise ValueError(f"SLOPES are too few for {len(targets)} targets")
 
 
 def _positions(rng):

@@ -101,8 +101,8 @@ def follow(truth, rule, runs, *, rng, velocity=True, s=None):
     x[:, :, 0] = state = z[:, :, 0]
     for k in range(1, z.shape[2]):
         state = state @ F.T
-        # P + E_z = E_z (I - K)^{-1}, for each axis
-        S = np.kron(np.eye(2), s.E_z[:2, :2] @ np.linalg.inv(np.eye(2) - gains[k]))
+        # P + E_z = (I - K)^{-1} E_z, for each axis
+        S = np.kron(np.eye(2), np.linalg.solve(np.eye(2) - gains[k], s.E_z[:2, :2]))
         nu = z[:, None, :, k] - state[:, :, None]  # (runs, track, detection, 4)
         part = slice(None) if velocity else slice(0, None, 2)
         weighted = nu[..., part] @ np.linalg.inv(S[part, part])

@@ -89,15 +89,21 @@ def ekf(z, s=None):
     Parameters
     ----------
     z : ndarray, shape (runs, K, 3)
-        Polar measurements; NaN where a scan has none.
+        Polar measurements; NaN where a scan has none, but for the first one, which is the start.
     s : Settings, optional
         Motion model; those of the data file if None.
 
     Returns
     -------
     Track
+
+    Raises
+    ------
+    ValueError
+        If a first measurement is not finite.
     """
     s = settings() if s is None else s
+    _checks.finite("z[:, 0], where the track starts,", z[:, 0], (3,))
     R = noise()
 
     def update(x, P, z):
@@ -112,7 +118,7 @@ def naive(z, s=None):
     Parameters
     ----------
     z : ndarray, shape (runs, K, 3)
-        Polar measurements.
+        Polar measurements, none missing.
     s : Settings, optional
         Those of the data file if None.
 
@@ -120,12 +126,18 @@ def naive(z, s=None):
     -------
     Track
 
+    Raises
+    ------
+    ValueError
+        If a measurement is not finite.
+
     Notes
     -----
     H = I asks for v_x and v_y. A radar has the range rate only; here it is turned into a vector
     along the line of sight. E_z is the polar noise at the place of the target, turned into x and y.
     """
     s = settings() if s is None else s
+    z = _checks.finite("z", z, (None, 3))
     along = polar_position(z) / z[..., :1]
     full = np.zeros((*z.shape[:-1], 4))
     full[..., ::2] = polar_position(z)

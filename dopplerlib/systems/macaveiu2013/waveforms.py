@@ -12,6 +12,11 @@ from .published import settings
 
 C = 299_792_458.0  # m/s
 
+# What is shown to the waveforms; ours.
+SLOPES = (1.0, -1.0, 0.6, -0.3)  # of several chirps, in units of the bandwidth over T
+CAR = np.stack([np.linspace(18, 22, 5), np.full(5, 10 / 3.6)], axis=-1)  # five points, 10 km/h
+PEDESTRIAN = np.array([[12.0, v] for v in (-1.5, -0.7, 0.2, 0.8, 1.5)])  # torso, arms and legs
+
 
 def noisy(signal, snr_db, *, rng):
     """Return a signal with white complex noise.
@@ -258,6 +263,25 @@ def speed_limit(chirps=512, s=None):
     """
     s = settings() if s is None else s
     return C / s.carrier * chirps / (4 * s.T)
+
+
+def spread(power, drop=10.0):
+    """Return how many cells of a map an echo fills, in range and in range rate.
+
+    Parameters
+    ----------
+    power : ndarray, shape (range rates, ranges)
+        In dB; a part of a map with one target in it.
+    drop : float
+        Cells count that are no weaker than the strongest one by more than this, in dB.
+
+    Returns
+    -------
+    ranges, rates : int
+        Columns and rows that hold such a cell.
+    """
+    strong = power >= power.max() - drop
+    return int(strong.any(axis=0).sum()), int(strong.any(axis=1).sum())
 
 
 def strongest(r, v, power):

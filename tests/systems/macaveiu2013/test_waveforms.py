@@ -96,6 +96,42 @@ def test_mfsk_tells_two_targets_unless_they_share_a_beat():
     assert abs(r - 30) > 3 and abs(r - 60) > 3
 
 
+def test_mfsk_tells_two_targets_in_one_measurement_where_slopes_need_three():
+    """Chirps that last as long as the measurement: two leave ghosts, the third one tells them."""
+    targets = np.array([[30.0, -5.0], [40.0, 4.0]])
+    relations = [w.chirp_relation(a * S.bandwidth / S.T) for a in w.SLOPES]
+    left = []
+    for number in (2, 3):
+        rows = np.stack(relations[:number])
+        _, misfit = w.intersections(rows, [targets @ row for row in rows])
+        left.append(np.sum(misfit < 0.5 / S.T))
+    assert left == [4, 2]
+    found = two_tones.mfsk_solve(*two_tones.mfsk(targets), count=2)
+    np.testing.assert_allclose(found, targets, atol=0.5)
+
+
+def test_a_car_is_long_in_range_and_a_pedestrian_in_range_rate():
+    """4 m in cells of 1 m, 3 m/s in cells of 0.16 m/s, and the width of the window, 2 cells or 3.
+
+    A point target fills as many of either.
+    """
+
+    def spread(case):
+        return w.spread(w.range_doppler_map(w.rapid_chirps(case))[2])
+
+    point = spread([[20.0, 2.8]])
+    assert max(point) <= 3
+    car, pedestrian = spread(w.CAR), spread(w.PEDESTRIAN)
+    assert car[0] >= 4 and car[1] <= point[1] + 1
+    assert pedestrian[0] <= point[0] + 1 and pedestrian[1] >= 10
+
+
+def test_a_spread_counts_the_cells_that_are_nearly_as_strong():
+    power = np.array([[-30.0, -9.0, -30.0], [-30.0, 0.0, -11.0], [-30.0, -8.0, -30.0]])
+    assert w.spread(power) == (1, 3)
+    assert w.spread(power, 12.0) == (2, 3)
+
+
 def test_a_map_shows_each_target_where_it_is():
     targets = np.array([[20.0, -5.0], [20.0, 8.0], [60.0, -5.0]])
     r, v, power = w.range_doppler_map(w.rapid_chirps(targets))
@@ -118,6 +154,8 @@ def test_a_target_faster_than_the_limit_is_folded():
     fast = limit + 10
     _, v = w.strongest(*w.range_doppler_map(w.rapid_chirps([[60.0, fast]])))
     assert v == pytest.approx(fast - 2 * limit, abs=0.5)
+    _, v = w.strongest(*w.range_doppler_map(w.rapid_chirps([[60.0, fast]], 1024)))
+    assert fast < w.speed_limit(1024) and v == pytest.approx(fast, abs=0.5)
 
 
 def test_noise_has_the_power_it_is_asked_for():
