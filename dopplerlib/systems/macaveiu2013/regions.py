@@ -9,7 +9,7 @@ from ... import _checks
 from ...evaluation.intervals import share_interval
 from ...model.kinematics import ncv_transition
 from .published import paths, settings
-from .tracking import gain_sequence, measure, step
+from .tracking import gain_sequence, measure
 
 MUCH_SMALLER = 0.5  # our reading of "much smaller than 1 m": less than half of it
 MOST = 0.9  # a claim on every record holds where it is true in this share of them
@@ -106,26 +106,30 @@ def _unit_noise(runs, rng, s):
 def _scores(noise, s):
     """Score the paths with this noise, scaled to the settings.
 
-    The filter is linear: its error goes the way of an estimate, but for the push that the truth
-    gets beside the model. Only what is scored is kept.
+    The error after a step is e_k = (I - K) (F e_{k-1} - push) + K n_k, where push is what the truth
+    does beside the model. Only what is scored is kept.
     """
     five = paths()
     truth = np.stack([path.truth for path in five.values()], axis=1)
-    push = truth[1:] - truth[:-1] @ ncv_transition(s.T).T
-    push = push.reshape(s.samples - 1, len(five), 1, 2, 2)
-    dp, dv = push[..., 0] - s.T * push[..., 1], push[..., 1]  # a step moves on by T v itself
-    p, v = s.sigma_p * noise[0, 0], s.sigma_v * noise[0, 1]
-    whole = np.sum(p**2, axis=-1)
-    settled, speed = np.zeros_like(whole), np.zeros_like(v)
-    for k, K in enumerate(gain_sequence(s)[1:], start=1):
-        p, v = p - dp[k - 1], v - dv[k - 1]
-        p, v = step(p, v, (s.sigma_p * noise[k, 0], s.sigma_v * noise[k, 1]), K, s.T)
-        off = p[..., 0] ** 2 + p[..., 1] ** 2
+    F = ncv_transition(s.T, dim=1)
+    push = (truth[1:] - truth[:-1] @ ncv_transition(s.T).T).reshape(-1, len(five), 2, 2)
+    K = gain_sequence(s)
+    stay = np.eye(2) - K[1:]
+    A, scaled = stay @ F, K * [s.sigma_p, s.sigma_v]
+    pushed = np.einsum("kij,kfaj->kifa", stay, push)[..., None, :]
+    shape, flat = noise.shape[1:], noise.reshape(*noise.shape[:2], -1)
+    e = scaled[0] @ flat[0]
+    whole = np.sum(e[0].reshape(shape[1:]) ** 2, axis=-1)
+    settled, speed = np.zeros_like(whole), np.zeros(shape[1:])
+    for k in range(1, s.samples):
+        e = (A[k - 1] @ e + scaled[k] @ flat[k]).reshape(shape) - pushed[k - 1]
+        off = e[0, ..., 0] ** 2 + e[0, ..., 1] ** 2
         if k < s.skip:
             np.maximum(whole, off, out=whole)
         else:
             np.maximum(settled, off, out=settled)
-            speed += v**2
+            speed += e[1] ** 2
+        e = e.reshape(2, -1)
     return Scores(
         tuple(five),
         settled=np.sqrt(settled),
