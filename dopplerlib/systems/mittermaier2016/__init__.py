@@ -5,8 +5,9 @@ Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
 from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
-from .chain_errors import Judged, judged, position_bound
-from .end_to_end import FAULTS, Baseband, EndToEnd, received, track_iq
+from .chain_bounds import position_bound, position_bound_iq
+from .chain_errors import Judged, judged
+from .end_to_end import EndToEnd, track_iq
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
 from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
@@ -34,6 +35,7 @@ from .published import (
     signal_chain,
     table2,
 )
+from .received_iq import FAULTS, Baseband, received
 from .simulated_iq import SIMULATED, read_simulated_iq, simulated_recording, write_simulated_iq
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
 from .sweep_readings import (
@@ -94,6 +96,7 @@ __all__ = [
     "linear_world",
     "matched_P0",
     "position_bound",
+    "position_bound_iq",
     "published_figure3",
     "published_figure4",
     "published_figure6",

@@ -1,0 +1,110 @@
+"""How well the position can be known: from windows side by side, and from the samples."""
+
+import numpy as np
+
+from ... import _checks
+from ...evaluation.bounds import crlb
+from ...signal.laws import crlb_frequency_std
+from .published import scenario
+
+
+def position_bound(moment, window, cn0, *, first=0.0, samples_per_second=100e3):
+    """Return how well the position at a moment can be known from windows side by side.
+
+    Parameters
+    ----------
+    moment : float
+        In s; the windows end there at the latest.
+    window : float
+        Length of a window in s.
+    cn0 : float
+        Power of an echo over the noise power in 1 Hz, in Hz.
+    first : float
+        When the first window begins, in s.
+    samples_per_second : float
+        Sampling rate in Hz, of little influence.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Covariance of the position in m^2 at the bound, for the target of Table 2 and constant
+        velocity; infinite entries on the diagonal where the windows are too few.
+
+    See Also
+    --------
+    position_bound_iq : the bound of the samples, which know more than their windows.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive where it has to be, or no window fits.
+
+    Notes
+    -----
+    `crlb` of the moving likelihood with the deviations of `crlb_frequency_std`. It sees the middles
+    of the windows only, no chirp inside them.
+    """
+    s = scenario()
+    window = _checks.positive_number("window", window)
+    cn0 = _checks.positive_number("cn0", cn0)
+    K = int((_checks.one_number("moment", moment) - first) / window + 1e-9)
+    if K < 1:
+        raise ValueError(f"moment must leave room for a window of {window} s, got {moment}")
+    n = max(2, round(window * samples_per_second))
+    sigma = crlb_frequency_std(cn0 * window / n, n, n / window)
+    middle, F = first + window / 2, np.eye(6)
+    F[:3, 3:] = middle * np.eye(3)
+    P = crlb(F @ s.x0, s.array, sigma, K, window, "moving")
+    F[:3, 3:] = (moment - middle) * np.eye(3)
+    return (F @ P @ F.T)[:3, :3]
+
+
+def position_bound_iq(moment, cn0, *, first=0.0, samples_per_second=2000.0):
+    """Return how well the position at a moment can be known from the IQ samples up to it.
+
+    Parameters
+    ----------
+    moment : float
+        In s; the samples end there.
+    cn0 : float
+        Power of an echo over the noise power in 1 Hz, in Hz.
+    first : float
+        When the samples begin, in s.
+    samples_per_second : float
+        Sampling rate in Hz, of little influence.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Covariance of the position in m^2 at the bound, for the target of Table 2 and constant
+        velocity. Amplitude and phase of each sensor's echo are unknown.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive where it has to be, or there are less than three samples.
+
+    Notes
+    -----
+    Slepian-Bangs: with a signal-to-noise ratio of `cn0` over the rate, a sample of phase phi adds
+    ``2 snr dphi dphi^T`` to the information on what phi depends on. The phase of sensor n is an
+    unknown plus -4 pi r_n / wavelength. The unknown takes the mean of the slopes of r_n away; the
+    amplitude takes nothing, as it is in quadrature.
+    """
+    s = scenario()
+    cn0 = _checks.positive_number("cn0", cn0)
+    fs = _checks.positive_number("samples_per_second", samples_per_second)
+    length = _checks.one_number("moment", moment) - _checks.one_number("first", first)
+    if not length * fs >= 3:
+        raise ValueError(f"moment must leave room for three samples, got {moment}")
+    t = first + (np.arange(round(length * fs)) + 0.5) / fs
+    path = s.x0[:3] + t[:, None] * s.x0[3:]
+    away = path - s.array.positions[:, None]  # (N, n, 3)
+    toward = away / np.linalg.norm(away, axis=-1, keepdims=True)
+    # The state at the moment is unknown: a velocity moves the position of earlier samples back.
+    slopes = np.concatenate([toward, (t[:, None] - moment) * toward], axis=-1)
+    slopes *= 4 * np.pi / s.array.wavelength
+    slopes = (slopes - slopes.mean(axis=1, keepdims=True)).reshape(-1, 6)
+    scale = np.linalg.norm(slopes, axis=0)
+    information = 2 * cn0 / fs * (slopes / scale).T @ (slopes / scale)
+    return (np.linalg.inv(information) / np.outer(scale, scale))[:3, :3]
