@@ -5,7 +5,7 @@ Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
 from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
-from .chain_bounds import position_bound, position_bound_iq
+from .chain_bounds import position_bound, position_bound_iq, record_for
 from .chain_errors import Judged, judged
 from .end_to_end import EndToEnd, track_iq
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
@@ -104,6 +104,7 @@ __all__ = [
     "range_claims",
     "read_simulated_iq",
     "received",
+    "record_for",
     "ruled_out",
     "samples_needed",
     "saved_figure4",

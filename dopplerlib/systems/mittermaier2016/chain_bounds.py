@@ -108,3 +108,39 @@ def position_bound_iq(moment, cn0, *, first=0.0, samples_per_second=2000.0):
     scale = np.linalg.norm(slopes, axis=0)
     information = 2 * cn0 / fs * (slopes / scale).T @ (slopes / scale)
     return (np.linalg.inv(information) / np.outer(scale, scale))[:3, :3]
+
+
+def record_for(error, cn0):
+    """Return how long a record has to be until the position can be known so well.
+
+    Parameters
+    ----------
+    error : float
+        Wanted root mean square of the position error at the end of the record, in m.
+    cn0 : float
+        Power of an echo over the noise power in 1 Hz, in Hz.
+
+    Returns
+    -------
+    float
+        Length in s at which `position_bound_iq` comes down to `error`, for a record that begins
+        with the track of Table 2; infinite if the whole track does not do it.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive.
+    """
+    error, cn0 = _checks.positive_number("error", error), _checks.positive_number("cn0", cn0)
+
+    def enough(length):
+        P = position_bound_iq(length, cn0, samples_per_second=400 / length)
+        return np.sqrt(np.trace(P)) <= error
+
+    low, high = 1e-3, float(scenario().time[-1])
+    if not enough(high):
+        return np.inf
+    while high > low * (1 + 1e-6):
+        middle = np.sqrt(low * high)
+        low, high = (low, middle) if enough(middle) else (middle, high)
+    return float(high)

@@ -144,6 +144,25 @@ def test_the_paper_s_own_shifts_leave_a_meter_after_ten_milliseconds():
     assert 0.078 < best < long < 0.25
 
 
+@pytest.mark.parametrize("dB", [60, 90])
+def test_a_start_takes_longer_than_ten_milliseconds(dB):
+    """The bound falls with the length, is 5 cm at the length that is found, and more at 10 ms."""
+    cn0 = 10 ** (dB / 10)
+    found = paper.record_for(0.05, cn0)
+    lengths = np.array([0.01, 0.9 * found, found, 1.1 * found])
+    errors = [
+        np.sqrt(np.trace(paper.position_bound_iq(t, cn0, samples_per_second=1e5))) for t in lengths
+    ]
+    assert (np.diff(errors) < 0).all()
+    assert 0.01 < found < 0.1
+    # The number of samples hardly matters: 400 in the one, a thousand and more in the other.
+    assert errors[2] == pytest.approx(0.05, rel=0.01)
+
+
+def test_an_error_that_the_whole_track_does_not_reach_takes_forever():
+    assert paper.record_for(1e-9, 1e6) == np.inf
+
+
 def test_what_makes_no_sense_is_refused_by_name():
     with pytest.raises(ValueError, match="moment must leave room for a window"):
         paper.position_bound(0.01, 0.05, 1e6)
