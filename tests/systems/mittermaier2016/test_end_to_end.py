@@ -305,16 +305,17 @@ def test_the_mean_of_an_echo_that_grows_is_not_the_constant():
 def test_the_shifts_of_an_echo_that_grows_become_better():
     """True errors and measured deviations of short windows fall as the fourth power of the range.
 
-    15 runs, 6 modules and 10 windows: a ratio of two variances is good to 7 %; 1 % is blur.
+    15 runs, 6 modules and 10 windows: a ratio of two variances is good to 7 %. Later on the echo
+    grows inside a window, so that the shift is that of a later moment than its middle.
     """
     settings = {"amplitude": "r^-2", "faults": False}
     iq = paper.received(15, rng=np.random.default_rng(79), **settings)
     f = paper.track_iq(iq, window=0.01, **RAW)
     error = f.shift - doppler_shift(states(f.time), S.array)
     r = np.linalg.norm(states(f.time)[:, None, :3] - S.array.positions, axis=-1)
-    early, later = f.time < 0.11, (f.time > 0.65) & (f.time < 0.75)
+    early, later = f.time < 0.11, (f.time > 0.35) & (f.time < 0.45)
     expected = np.mean(r[early] ** 4) / np.mean(r[later] ** 4)
-    assert expected > 20
+    assert expected > 2 * 2  # a constant R would have 1, and the claim asks for less than 2
     for of_one in (error, f.shift_std):
         variances = [np.mean(of_one[:, part] ** 2) for part in (early, later)]
         assert variances[0] / variances[1] == pytest.approx(expected, rel=0.35)
