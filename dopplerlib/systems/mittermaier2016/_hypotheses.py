@@ -45,7 +45,7 @@ def filters(z, std, weights, array, T, used, apart, sigma_p, states, costs):
     shape = (len(states), 1 + len(z) - used)
     x, P = np.full((*shape, 6), np.nan), np.full((*shape, 6, 6), np.nan)
     nis, score = np.full((shape[0], shape[1] - 1), np.nan), np.full(shape, np.inf)
-    memory = np.full(shape[0], np.nan)
+    innovations = {}
     costs = np.where(np.isnan(costs), np.inf, costs)
     for i in np.flatnonzero(costs < costs.min() + CARRIED):
         covariance = start_covariance(states[i], array, weights, apart * T)
@@ -59,8 +59,9 @@ def filters(z, std, weights, array, T, used, apart, sigma_p, states, costs):
             x[i, 1:], P[i, 1:], nis[i] = t.x, t.P, t.nis
             factor = _factor(t.S, np.isnan(t.innovation))
             score[i, 1:] += np.cumsum(_misfit(t.nis, factor))
-            memory[i] = _memory(t.innovation, factor)
-    return x, P, nis, memory, score
+            innovations[i] = t.innovation, factor
+    winner = innovations.get(np.argmin(score[:, -1]))
+    return x, P, nis, np.nan if winner is None else _memory(*winner), score
 
 
 def _factor(S, missing):

@@ -21,7 +21,7 @@ class Judged:
         Normalized innovation squared of the hypothesis that counts in the end, averaged over the
         samples of the filter.
     memory : ndarray, shape (runs,)
-        Autocorrelation of its innovations, see `EndToEnd`.
+        Autocorrelation of the innovations, see `EndToEnd`.
     """
 
     error: np.ndarray
@@ -60,5 +60,5 @@ def judged(found, moments=(0.5, 1.0), carry=True):
         error.append(np.linalg.norm(off[:, :3], axis=-1))
         squared.append(np.sum(off * np.linalg.solve(P, off[..., None])[..., 0], axis=-1))
     rows = np.arange(len(chosen))
-    nis, memory = found.nis[rows, chosen].mean(axis=-1), found.memory[rows, chosen]
-    return Judged(np.array(error), np.array(squared), nis, memory)
+    nis = found.nis[rows, chosen].mean(axis=-1)
+    return Judged(np.array(error), np.array(squared), nis, found.memory)

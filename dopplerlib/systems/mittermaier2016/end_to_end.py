@@ -1,6 +1,7 @@
 """The whole chain on the track of Table 2: from IQ samples to a position, every stage a switch."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -41,9 +42,10 @@ class EndToEnd:
         Their covariances.
     nis : ndarray, shape (runs, H, K - used)
         Normalized innovation squared.
-    memory : ndarray, shape (runs, H)
+    memory : ndarray, shape (runs,)
         Autocorrelation of the normalized innovations from one sample to the next, averaged over the
-        modules; NaN where a module is missing somewhere.
+        modules, for the hypothesis that is the likeliest in the end; NaN if a module is missing in
+        any sample.
     score : ndarray, shape (runs, H, 1 + K - used)
         Minus twice the log likelihood of all samples so far, up to a constant; infinite if there is
         no such hypothesis.
@@ -62,6 +64,12 @@ class EndToEnd:
     memory: np.ndarray
     score: np.ndarray
     sigma_p: float
+
+    @property
+    def final_nis(self):
+        """NIS of the hypothesis that is the likeliest in the end, shape (runs, K - used)."""
+        chosen = np.argmin(self.score[:, :, -1], axis=1)
+        return self.nis[np.arange(len(chosen)), chosen]
 
     def samples_at(self, moment):
         """Return how many samples of the filter are known at a moment.
@@ -219,7 +227,7 @@ def track_iq(
         raise ValueError(f"start must hold at least two windows, got {used} in {start} s")
     T = step / iq.fs
     sigma_p = sigma_p * np.sqrt(s.T)
-    boxes = [start_box()]
+    boxes = [_room()]
     if _checks.one_of("search", search, ("quarters", "room")) == "quarters":
         boxes = quarters(*boxes[0])
     apart = -(-n // step)
@@ -230,6 +238,12 @@ def track_iq(
     ]
     fields = (np.array(field) for field in zip(*each, strict=True))
     return EndToEnd(time, known, z, std, used, *fields, sigma_p)
+
+
+@cache
+def _room():
+    """Return the box of the start, which takes longer to read than a record to track."""
+    return start_box()
 
 
 def _without_constant(iq, until):

@@ -156,16 +156,9 @@ def test_nis_is_low_for_two_reasons(iq, found):
     calm = paper.track_iq(iq, sigma_p=S.sigma_p / 100)
     squared = (found.shift - doppler_shift(states(found.time), S.array)) / found.shift_std
     squared = np.sum(squared**2, axis=-1)[:, found.used :]
-    chosen = np.argmin(found.score[:, :, -1], axis=1)
     early = found.time[found.used :] < 0.7
-    real, nis, without = (
-        values[:, early].mean()
-        for values in (
-            squared,
-            found.nis[np.arange(RUNS), chosen],
-            calm.nis[np.arange(RUNS), np.argmin(calm.score[:, :, -1], axis=1)],
-        )
-    )
+    parts = (squared, found.final_nis, calm.final_nis)
+    real, nis, without = (values[:, early].mean() for values in parts)
     assert real == pytest.approx(6, abs=0.6)
     assert nis < real - 0.5
     assert without == pytest.approx(real, abs=0.5)
