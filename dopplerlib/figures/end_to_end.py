@@ -182,7 +182,7 @@ def achievable(levels, medians, bounds):
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
-        styles = ((BOUND, "--"), (PUBLISHED, ":"))
+        styles = ((BOUND, "--"), (BOUND, ":"))
         for (name, bound), (color, ls) in zip(bounds.items(), styles, strict=False):
             ax.plot(levels, 1e3 * np.asarray(bound), color=color, ls=ls, lw=1.5, label=name)
         for x, m in zip(levels, medians, strict=True):
