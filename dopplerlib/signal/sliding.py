@@ -176,8 +176,7 @@ def sliding_doppler(x, fs, window, hop, estimator=ml_frequency, *, band=None, ta
 
 def _by_peaks(records, fs, n, firsts, _, band):
     """Return frequencies, squared amplitudes and noise variances (R, K) of the highest peaks."""
-    shape = (len(records), len(firsts))
-    rows, starts = (v.ravel() for v in np.broadcast_arrays(np.arange(shape[0])[:, None], firsts))
+    shape, rows, starts = _places(records, firsts)
     f, power = peaks(records, rows, starts, n, fs, band)
     energy = np.zeros((len(records), records.shape[1] + 1))
     np.cumsum(records.real**2 + records.imag**2, axis=-1, out=energy[:, 1:])
@@ -189,24 +188,30 @@ def _by_peaks(records, fs, n, firsts, _, band):
 
 def _by_call(records, fs, n, firsts, estimator, band):
     """Return the same of any estimator."""
-    f, amp2, noise = (np.empty((len(records), len(firsts))) for _ in range(3))
+    shape, rows, starts = _places(records, firsts)
+    f, amp2, noise = np.empty((3, len(rows)))
     windows = np.lib.stride_tricks.sliding_window_view(records, n, axis=-1)
     t = np.arange(n)
     constant = estimator is ml_frequency_dc
     step = max(1, _AT_ONCE // n)
-    for row in range(len(records)):
-        for a in range(0, len(firsts), step):
-            part = slice(a, a + step)
-            x = windows[row, firsts[part]]
-            with np.errstate(divide="ignore", invalid="ignore"):  # windows of zeros
-                found = estimator(x, fs, band)
-            found = np.where((x != 0).any(axis=-1) & np.isfinite(found), found, np.nan)
-            x = about_mean(x) if constant else x
-            known = np.where(np.isnan(found), fs / n, found)
-            Y = np.sum(x * np.exp(-2j * np.pi * known[:, None] / fs * t), axis=-1)
-            size = n - sum_of_ones(known * n / fs, n)[0] ** 2 / n if constant else n
-            f[row, part] = found
-            amp2[row, part] = np.where(np.isnan(found), 0.0, np.abs(Y / size) ** 2)
-            left = np.sum(x.real**2 + x.imag**2, axis=-1) - size * amp2[row, part]
-            noise[row, part] = np.maximum(left, 0.0) / (n - (2.5 if constant else 1.5))
-    return f, amp2, noise
+    for a in range(0, len(rows), step):
+        part = slice(a, a + step)
+        x = windows[rows[part], starts[part]]
+        with np.errstate(divide="ignore", invalid="ignore"):  # windows of zeros
+            found = estimator(x, fs, band)
+        found = np.where((x != 0).any(axis=-1) & np.isfinite(found), found, np.nan)
+        x = about_mean(x) if constant else x
+        known = np.where(np.isnan(found), fs / n, found)
+        Y = np.sum(x * np.exp(-2j * np.pi * known[:, None] / fs * t), axis=-1)
+        size = n - sum_of_ones(known * n / fs, n)[0] ** 2 / n if constant else n
+        f[part] = found
+        amp2[part] = np.where(np.isnan(found), 0.0, np.abs(Y / size) ** 2)
+        left = np.sum(x.real**2 + x.imag**2, axis=-1) - size * amp2[part]
+        noise[part] = np.maximum(left, 0.0) / (n - (2.5 if constant else 1.5))
+    return f.reshape(shape), amp2.reshape(shape), noise.reshape(shape)
+
+
+def _places(records, firsts):
+    """Return the shape of the results, and the row and first sample of each window in a line."""
+    places = np.broadcast_arrays(np.arange(len(records))[:, None], firsts)
+    return places[0].shape, *(v.ravel() for v in places)

@@ -181,6 +181,14 @@ def test_zeros_have_no_frequency_and_beside_a_constant_no_constant_has(estimator
     assert np.isnan(f[2:]).all() == (estimator is ml_frequency_dc)
 
 
+def test_a_tone_on_a_bin_leaves_zeros_at_the_others_and_that_stops_nothing():
+    """Without noise, all other bins of an unpadded transform are zero to the last bit."""
+    x = np.stack([np.ones(N), np.exp(2j * np.pi * np.arange(N) / 4)])
+    for band in [(50, 130), (300, 400), (5, 6)]:
+        f = ml_frequency(x, FS, band)
+        assert ((f >= band[0]) & (f <= band[1])).all()
+
+
 @pytest.mark.parametrize("f", [25.0, -40.0, 7.0, 300.0])
 def test_beside_a_constant_the_estimate_is_that_of_least_squares(f):
     """SciPy fits tone and constant, five numbers, from the truth."""
