@@ -5,7 +5,7 @@ Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
 from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
-from .chain_bounds import position_bound, position_bound_iq, record_for
+from .chain_bounds import median_error, position_bound, position_bound_iq, record_for
 from .chain_errors import Judged, judged
 from .end_to_end import EndToEnd, track_iq
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
@@ -95,6 +95,7 @@ __all__ = [
     "linear_filter",
     "linear_world",
     "matched_P0",
+    "median_error",
     "position_bound",
     "position_bound_iq",
     "published_figure3",

@@ -80,7 +80,10 @@ def _misfit(nis, factor):
 
 def _memory(innovation, factor):
     """Return the autocorrelation of normalized innovations at one sample, over all modules."""
-    normal = np.linalg.solve(factor, innovation[..., None])[..., 0]
+    normal = np.empty_like(innovation)
+    for i in range(innovation.shape[-1]):  # forward substitution, for all samples at once
+        known = np.sum(factor[:, i, :i] * normal[:, :i], axis=-1)
+        normal[:, i] = (innovation[:, i] - known) / factor[:, i, i]
     power = np.sum(normal**2)
     return np.sum(normal[1:] * normal[:-1]) / power if power > 0 else np.nan
 

@@ -144,3 +144,31 @@ def record_for(error, cn0):
         middle = np.sqrt(low * high)
         low, high = (low, middle) if enough(middle) else (middle, high)
     return float(high)
+
+
+def median_error(P, *, rng, draws=20_000):
+    """Return the median length of a normal error.
+
+    Parameters
+    ----------
+    P : array_like, shape (3, 3)
+        Covariance of the error in m^2.
+    rng : numpy.random.Generator
+        Source of randomness.
+    draws : int
+        How many errors are drawn.
+
+    Returns
+    -------
+    float
+        In m, good to about a percent with 20 000 draws.
+
+    Raises
+    ------
+    ValueError
+        If `P` is no covariance, `draws` is not positive, or `rng` is not a generator.
+    """
+    _checks.generator("rng", rng)
+    P = _checks.covariance("P", P, 3)
+    normal = rng.standard_normal((_checks.whole_number("draws", draws), 3))
+    return float(np.median(np.linalg.norm(normal @ np.linalg.cholesky(P).T, axis=-1)))

@@ -163,6 +163,16 @@ def test_an_error_that_the_whole_track_does_not_reach_takes_forever():
     assert paper.record_for(1e-9, 1e6) == np.inf
 
 
+def test_the_median_error_of_a_sphere_is_that_of_chi_square():
+    """And of a needle that of a normal number. One deviation is 0.5 % and 0.9 %."""
+    expected = 2 * np.sqrt(chi2.ppf(0.5, 3))
+    found = paper.median_error(4 * np.eye(3), rng=np.random.default_rng(83))
+    assert found == pytest.approx(expected, rel=0.025)
+    flat = np.outer([3, 0, 4], [3, 0, 4]) + 1e-9 * np.eye(3)
+    found = paper.median_error(flat, rng=np.random.default_rng(84))
+    assert found == pytest.approx(5 * np.sqrt(chi2.ppf(0.5, 1)), rel=0.05)
+
+
 def test_what_makes_no_sense_is_refused_by_name():
     with pytest.raises(ValueError, match="moment must leave room for a window"):
         paper.position_bound(0.01, 0.05, 1e6)
