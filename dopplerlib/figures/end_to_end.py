@@ -104,10 +104,12 @@ def wrong_time(time, nis, nees, labels):
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
         for ax, values, name in ((left, nis, "NIS"), (right, nees, "NEES")):
-            for label, each, (color, ls, lw) in zip(labels, values, styles, strict=False):
-                ends = [e.low for e in each], [e.high for e in each]
-                ax.fill_between(time, *ends, color=color, alpha=0.2, lw=0)
+            for i, (label, each) in enumerate(zip(labels, values, strict=True)):
+                color, ls, lw = styles[i]
                 ax.plot(time, [e.value for e in each], color=color, ls=ls, lw=lw, label=label)
+                if each not in values[:i]:  # equal bands on top of each other would mix colors
+                    ends = [e.low for e in each], [e.high for e in each]
+                    ax.fill_between(time, *ends, color=color, alpha=0.2, lw=0)
             ax.axhline(6, color=BOUND, lw=0.9)
             ax.set(xlabel="time in s", ylabel=f"mean {name}")
         left.set_ylim(0, 12)

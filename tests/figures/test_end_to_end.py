@@ -46,6 +46,7 @@ def test_wrong_times_are_drawn_in_both_panels_with_their_intervals():
     left, right = draw.wrong_time(time, [one, one], [one, two], ["a", "b"]).axes
     np.testing.assert_array_equal(labels(left)["b"].get_ydata(), [1, 1, 1])
     np.testing.assert_array_equal(labels(right)["b"].get_ydata(), [3, 3, 3])
+    assert len(left.collections) == 1 and len(right.collections) == 2
     heights = right.collections[1].get_paths()[0].vertices[:, 1]
     assert (heights.min(), heights.max()) == (2, 5)
 

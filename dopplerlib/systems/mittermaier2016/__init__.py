@@ -21,6 +21,7 @@ from .noise_sweep import (
     figure4_array,
     grid_points,
 )
+from .phase_fit import fit_phases
 from .published import (
     PublishedFigure3,
     PublishedFigure4,
@@ -90,6 +91,7 @@ __all__ = [
     "figure4_settings",
     "figure6",
     "figure6_readings",
+    "fit_phases",
     "grid_points",
     "judged",
     "linear_filter",
