@@ -32,24 +32,26 @@ def bound_map(x, y, deviation, sensors, points, covariances, scale, baselines, a
     -------
     matplotlib.figure.Figure
     """
-    with styled(7.0, 3.4) as figure:
-        left, right = figure.subplots(1, 2, width_ratios=(5, 4))
+    with styled(7.0, 7.2) as figure:
+        plane, below = figure.subplots(2, 1, height_ratios=(5, 3))
         levels = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0]
-        lines = left.contour(x, y, deviation, levels, colors=BOUND, linewidths=1.0)
-        left.clabel(lines, fmt="%g m", fontsize=8)
+        lines = plane.contour(x, y, deviation, levels, colors=BOUND, linewidths=1.2)
+        for label in plane.clabel(lines, fmt="%g m", fontsize=11, colors=TRUTH):
+            label.set_bbox({"fc": "white", "ec": "none", "pad": 1.0})
         for p, P in zip(points, covariances, strict=True):
             values, vectors = np.linalg.eigh(P)
             angle = np.degrees(np.arctan2(vectors[1, 1], vectors[0, 1]))
-            left.add_patch(
+            plane.add_patch(
                 Ellipse(p, *(2 * scale * np.sqrt(values[::-1])), angle=angle, fc=OURS, alpha=0.5)
             )
-            left.plot(*p, ".", color=TRUTH, ms=4)
-        left.plot(*sensors.T, "o", color=SENSOR)
-        left.set(xlabel="x in m", ylabel="y in m", ylim=(-0.4, 5.6), aspect="equal")
+            plane.plot(*p, ".", color=TRUTH, ms=4)
+        plane.plot(*sensors.T, "o", color=SENSOR)
+        plane.set(xlabel="x in m", ylabel="y in m", ylim=(-0.4, 5.6), aspect="equal")
         for (label, values), (color, ls) in zip(across.items(), VARIANTS, strict=False):
-            right.plot(baselines, values, color=color, ls=ls, label=label)
-        right.set(xlabel="baseline in m", ylabel="least standard deviation in m", yscale="log")
-        right.legend(loc="upper right")
+            below.plot(baselines, values, color=color, ls=ls, label=label)
+        below.set(xlabel="baseline in m", ylabel="least deviation in m", yscale="log")
+        plain_log_ticks(below.yaxis)
+        below.legend(loc="upper right")
         return figure
 
 
@@ -115,15 +117,17 @@ def reach(results):
         return figure
 
 
-def offsets(offset, errors):
-    """Draw the error over how late the second radar is.
+def sweep(values, errors, xlabel):
+    """Draw the error of several trackers over a setting: a delay, a baseline.
 
     Parameters
     ----------
-    offset : ndarray, shape (M,)
-        In s.
+    values : array_like, shape (M,)
+        Values of the setting.
     errors : dict of str to list of Estimate
-        Root mean square errors in m by label.
+        Root mean square errors in m by label, one for each value.
+    xlabel : str
+        Name and unit of the setting.
 
     Returns
     -------
@@ -131,19 +135,11 @@ def offsets(offset, errors):
     """
     with styled(6.0, 3.2) as figure:
         ax = figure.subplots()
-        for (label, values), (color, ls) in zip(errors.items(), VARIANTS, strict=False):
-            middle = [value.value for value in values]
-            ax.plot(offset, middle, color=color, ls=ls, marker="o", ms=4, label=label)
-            ax.fill_between(
-                offset,
-                [value.low for value in values],
-                [value.high for value in values],
-                color=color,
-                alpha=0.2,
-                lw=0,
-            )
-        ax.set(xlabel="radar 2 measures later by, in s", ylabel="RMS position error in m")
-        ax.set(yscale="log")
+        for (label, found), (color, ls) in zip(errors.items(), VARIANTS, strict=False):
+            low, middle, high = zip(*((e.low, e.value, e.high) for e in found), strict=True)
+            ax.plot(values, middle, color=color, ls=ls, marker="o", ms=4, label=label)
+            ax.fill_between(values, low, high, color=color, alpha=0.2, lw=0)
+        ax.set(xlabel=xlabel, ylabel="RMS position error in m", yscale="log")
         plain_log_ticks(ax.yaxis)
         ax.legend(fontsize=9)
         return figure

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from .asheim import MEASURED
-from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, styled
+from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, TRUTH, styled
 
 LABEL = "SIMULATED"
 

@@ -14,6 +14,7 @@ PUBLISHED = "#D55E00"
 TRUTH = "#222222"
 SENSOR = "#009E73"
 BOUND = "#777777"
+MEASURED = "#999999"  # what a radar says, beside what a filter makes of it
 
 # Colors of the palette without a meaning, for what a single figure compares.
 ORANGE, PINK = "#E69F00", "#CC79A7"

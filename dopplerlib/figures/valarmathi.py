@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from .style import BOUND, OURS, TRUTH, VARIANTS, styled
+from ..evaluation.intervals import quantile_interval
+from ..systems.valarmathi import ALGORITHMS
+from .style import BOUND, OURS, PUBLISHED, TRUTH, VARIANTS, styled
 
 # The color of algorithms 1 to 6, and a line and a mark for print in gray.
 _STYLES = {
@@ -13,6 +15,8 @@ _STYLES = {
     5: ("#009E73", "--", "^"),
     6: ("#0072B2", "-", "X"),
 }
+# A legend inside of the axes covers the grid behind it.
+_FRAME = dict(frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
 
 
 def paths(several):
@@ -32,7 +36,7 @@ def paths(several):
         for path, (color, line) in zip(several, VARIANTS, strict=False):
             ax.plot(path.time, path.v, color=color, ls=line, label=path.name)
         ax.set(xlabel="time (s)", ylabel="velocity (m/s)", ylim=(0, None))
-        ax.legend()
+        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
         return figure
 
 
@@ -69,7 +73,7 @@ def window_error(table, snr_db):
         return figure
 
 
-def velocities(results, run=0):
+def velocities(results, run=0, numbers=None):
     """Draw velocities of sensor 1, sensor 2 and both, fixed window: Figs 7 to 9 and 11 to 13.
 
     Parameters
@@ -78,6 +82,8 @@ def velocities(results, run=0):
         A row for each.
     run : int
         Which run to draw.
+    numbers : sequence of sequence of int, optional
+        For each result, the numbers of the three figures of the document.
 
     Returns
     -------
@@ -85,17 +91,18 @@ def velocities(results, run=0):
     """
     with styled(7.0, 2.5 * len(results) + 0.5) as figure:
         rows = figure.subplots(len(results), 3, sharex=True, sharey="row", squeeze=False)
-        for result, axes in zip(results, rows, strict=True):
+        told = numbers or [(None,) * 3] * len(results)
+        for result, axes, three in zip(results, rows, told, strict=True):
             panels = (
                 ("sensor 1", result.velocity(1, sensor=1)),
                 ("sensor 2", result.velocity(1, sensor=2)),
                 ("fused", result.velocity(3)),
             )
             window = (result.time > 5.7) & (result.time < 7.0)
-            for ax, (name, v) in zip(axes, panels, strict=True):
+            for ax, (name, v), number in zip(axes, panels, three, strict=True):
                 ax.plot(result.time, result.truth, color=TRUTH, ls="--", lw=1.2, label="truth")
                 ax.plot(result.time, v[run], color=OURS, lw=1.2, label="estimate")
-                ax.set_title(f"{result.path.name}, {name}")
+                ax.set_title(f"Fig {number}: {name}" if number else name)
                 inset = ax.inset_axes([0.3, 0.56, 0.68, 0.42])
                 inset.plot(result.time[window], result.truth[window], color=TRUTH, ls="--", lw=1)
                 inset.plot(result.time[window], v[run, window], color=OURS, lw=1)
@@ -107,14 +114,14 @@ def velocities(results, run=0):
             axes[0].set_yticks(
                 np.linspace(low, high, 3), [f"{v:.0f}" for v in np.linspace(low, high, 3)]
             )
-            axes[0].set_ylabel("velocity (m/s)")
+            axes[0].set_ylabel(f"{result.path.name}: velocity (m/s)")
         for ax in rows[-1]:
             ax.set(xlabel="time (s)", xticks=range(0, 16, 5))
         figure.legend(*rows[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
         return figure
 
 
-def cumulative_errors(results, lines, ncols=2):
+def cumulative_errors(results, lines, titles=None, ncols=2):
     """Draw the running error of some algorithms, mean over the runs: Figs 10, 14, 15 and 16.
 
     Parameters
@@ -123,6 +130,8 @@ def cumulative_errors(results, lines, ncols=2):
         A panel for each.
     lines : sequence of sequence of tuple (int, int)
         For each panel, which algorithms, and the filter of which sensor.
+    titles : sequence of str, optional
+        Of the panels; the names of the paths if None.
     ncols : int
         Panels beside one another.
 
@@ -133,7 +142,8 @@ def cumulative_errors(results, lines, ncols=2):
     nrows = -(-len(results) // ncols)
     with styled(7.0, 2.5 * nrows + 0.5) as figure:
         axes = figure.subplots(nrows, ncols, sharex=True, squeeze=False).flat
-        for ax, result, shown in zip(axes, results, lines, strict=True):
+        titles = [result.path.name for result in results] if titles is None else titles
+        for ax, result, shown, title in zip(axes, results, lines, titles, strict=True):
             time = result.time[result.during("all")]
             for algorithm, sensor in shown:
                 color, line, _ = _STYLES[algorithm]
@@ -143,48 +153,89 @@ def cumulative_errors(results, lines, ncols=2):
                     alpha=0.55 if sensor == 2 else 1.0,
                     label=f"algorithm {algorithm}" + (f", sensor {sensor}" if single else ""),
                 )  # fmt: skip
-            ax.set_title(result.path.name)
+            ax.set_title(title)
             ax.set(ylabel="cee (%)", ylim=(0, None), xticks=range(0, 16, 5))
-            ax.legend(fontsize=8.5)
+            ax.legend(fontsize=8.5, **_FRAME)
         for ax in figure.axes[-ncols:]:
             ax.set_xlabel("time (s)")
         return figure
 
 
-def sweep(snrs_db, errors, names, failed):
-    """Draw errors over the signal-to-noise ratio: of the whole record, in maneuvers, and at rest.
+def sweep(study, failed, limits):
+    """Draw errors over the signal-to-noise ratio: in the maneuvers, and at constant velocity.
 
     Parameters
     ----------
-    snrs_db : sequence of float
-        Signal-to-noise ratios in dB.
-    errors : dict of str to dict of (int, str) to ndarray, shape (ratios, runs)
-        For each path, what `snr_sweep` returns. Drawn is the root mean square over the runs.
-    names : dict of int to str
-        Names of the algorithms.
+    study : Study
+        Drawn are the medians over the runs with their 95 % intervals: of each path in the
+        maneuver, and of its second one at constant velocity.
     failed : float
         Error in m/s from which a run has failed.
+    limits : sequence of float
+        Signal-to-noise ratios in dB at which the document sees its limits.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    phases = {"maneuver": "in a maneuver", "constant": "constant velocity"}
-    with styled(7.0, 2.7 * len(errors) + 0.7) as figure:
-        rows = figure.subplots(len(errors), 2, sharex=True, sharey=True, squeeze=False)
-        for (path, found), axes in zip(errors.items(), rows, strict=True):
-            for ax, (phase, title) in zip(axes, phases.items(), strict=True):
-                for algorithm, name in names.items():
-                    color, line, mark = _STYLES[algorithm]
-                    rmse = np.sqrt(np.mean(found[algorithm, phase] ** 2, axis=-1))
-                    ax.plot(snrs_db, rmse, color=color, ls=line, marker=mark, ms=3.5, label=name)
-                ax.axhline(failed, color=BOUND, lw=0.8)
-                ax.set_title(f"{path}, {title}")
-                ax.set(yscale="log")
-            axes[0].set_ylabel("RMSE (m/s)")
-        for ax in rows[-1]:
+    panels = [(path, "maneuver", f"{path}, in the maneuver") for path in study.paths]
+    panels.append((study.paths[1], "constant", f"{study.paths[1]}, constant velocity"))
+    with styled(7.0, 6.6) as figure:
+        axes = figure.subplots(2, 2, sharex=True, sharey="row")
+        for ax, (path, phase, title) in zip(axes.flat, panels, strict=True):
+            for algorithm, name in ALGORITHMS.items():
+                color, line, mark = _STYLES[algorithm]
+                found = [quantile_interval(runs) for runs in study.of(phase, path, algorithm)]
+                middle, low, high = np.array([[e.value, e.low, e.high] for e in found]).T
+                ax.fill_between(study.snrs_db, low, high, color=color, alpha=0.25, lw=0)
+                ax.plot(
+                    study.snrs_db, middle, color=color, ls=line, marker=mark, ms=3.5, lw=1.3,
+                    label=name,
+                )  # fmt: skip
+            ax.axhline(failed, color=BOUND, lw=0.8)
+            for limit in limits:
+                ax.axvline(limit, color=PUBLISHED, lw=0.9, ls=":")
+            ax.set_title(title)
+            ax.set(yscale="log")
+        for ax in axes[:, 0]:
+            ax.set_ylabel("RMSE (m/s)")
+        for ax in axes[-1]:
             ax.set_xlabel("signal-to-noise ratio (dB)")
-        figure.legend(*rows[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+        return figure
+
+
+def failures(shares, failed_share):
+    """Draw the share of failed runs over the signal-to-noise ratio, for each path.
+
+    Parameters
+    ----------
+    shares : dict of (str, int) to tuple of (ndarray, sequence of Estimate)
+        By path and algorithm, as `failed_shares` returns it.
+    failed_share : float
+        Share from which an algorithm has failed.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    paths_ = list(dict.fromkeys(path for path, _ in shares))
+    with styled(7.0, 3.1) as figure:
+        axes = figure.subplots(1, len(paths_), sharey=True, squeeze=False)[0]
+        for ax, path in zip(axes, paths_, strict=True):
+            for algorithm, name in ALGORITHMS.items():
+                color, line, mark = _STYLES[algorithm]
+                snrs_db, found = shares[path, algorithm]
+                value, low, high = 100 * np.array([[e.value, e.low, e.high] for e in found]).T
+                ax.fill_between(snrs_db, low, high, color=color, alpha=0.2, lw=0)
+                ax.plot(
+                    snrs_db, value, color=color, ls=line, marker=mark, ms=3.5, lw=1.3, label=name
+                )
+            ax.axhline(100 * failed_share, color=BOUND, lw=0.8)
+            ax.set_title(path)
+            ax.set_xlabel("SNR (dB)")
+        axes[0].set_ylabel("failed runs (%)")
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
         return figure
 
 
@@ -206,5 +257,5 @@ def correlation(measured, law):
         ax.plot(law, color=TRUTH, ls="--", lw=1.2, label="closed form")
         ax.axhline(0, color=BOUND, lw=0.8)
         ax.set(xlabel="lag (samples)", ylabel="autocorrelation", ylim=(-0.6, 1))
-        ax.legend()
+        ax.legend(**_FRAME)
         return figure

@@ -3,7 +3,6 @@
 import hashlib
 import json
 import re
-import warnings
 from datetime import datetime
 
 import numpy as np
@@ -163,21 +162,18 @@ def _read(path):
 
 def _metadata(path):
     """Return the content of a file of metadata, or raise unless all of it can be obeyed."""
-    from jsonschema.exceptions import ValidationError
-    from sigmf.validate import validate
+    from jsonschema import Draft202012Validator
+    from jsonschema.exceptions import best_match
+    from sigmf.schema import get_schema
 
     def refuse(word):
         raise ValueError(f"its numbers must be finite, got {word}")
 
     content = json.loads(path.read_bytes(), parse_constant=refuse)
-    try:
-        with warnings.catch_warnings():
-            # Names of an extension that is not announced: nobody has to understand them.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            validate(content)
-    except ValidationError as error:
+    error = best_match(Draft202012Validator(get_schema()).iter_errors(content))
+    if error is not None:
         where = ".".join(map(str, error.absolute_path)) or "its content"
-        raise ValueError(f"{where}: {first_line(error.message)}") from None
+        raise ValueError(f"{where}: {first_line(error.message)}")
     info, captures = content["global"], content["captures"]
     if not info["core:version"].startswith("1."):
         raise ValueError(f"its core:version must be one of SigMF 1, got {info['core:version']}")

@@ -10,7 +10,7 @@ from .frequency import ml_frequency, ml_frequency_dc, peaks
 from .laws import crlb_frequency_std, crlb_frequency_std_dc
 
 _TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}
-_AT_ONCE = 2**16  # samples in the windows that an estimator gets in one call: a megabyte
+_AT_ONCE = 2**14  # samples in the windows of one call of an estimator: a quarter of a megabyte
 
 
 @dataclass(frozen=True)
@@ -178,10 +178,8 @@ def _by_peaks(records, fs, n, firsts, _, band):
     """Return frequencies, squared amplitudes and noise variances (R, K) of the highest peaks."""
     shape, rows, starts = _places(records, firsts)
     f, power = peaks(records, rows, starts, n, fs, band)
-    energy = np.zeros((len(records), records.shape[1] + 1))
-    np.cumsum(records.real**2 + records.imag**2, axis=-1, out=energy[:, 1:])
     amp2 = power.reshape(shape) / n**2
-    left = energy[:, firsts + n] - energy[:, firsts] - n * amp2
+    left = _energies(records, n, firsts) - n * amp2
     # Less than zero is rounding: the power at one frequency is at most the whole.
     return f.reshape(shape), amp2, np.maximum(left, 0.0) / (n - 1.5)
 
@@ -193,22 +191,36 @@ def _by_call(records, fs, n, firsts, estimator, band):
     windows = np.lib.stride_tricks.sliding_window_view(records, n, axis=-1)
     t = np.arange(n)
     constant = estimator is ml_frequency_dc
+    energy = _energies(records, n, firsts).ravel()
     step = max(1, _AT_ONCE // n)
     for a in range(0, len(rows), step):
         part = slice(a, a + step)
         x = windows[rows[part], starts[part]]
         with np.errstate(divide="ignore", invalid="ignore"):  # windows of zeros
             found = estimator(x, fs, band)
-        found = np.where((x != 0).any(axis=-1) & np.isfinite(found), found, np.nan)
-        x = about_mean(x) if constant else x
+        none = ~np.isfinite(found)
+        blank = np.flatnonzero(energy[part] == 0)  # by rounding, or because all are zero
+        none[blank] |= (x[blank] == 0).all(axis=-1)
+        found = np.where(none, np.nan, found)
+        if constant:
+            x = about_mean(x)
+            energy[part] = np.sum(x.real**2 + x.imag**2, axis=-1)
         known = np.where(np.isnan(found), fs / n, found)
         Y = np.sum(x * np.exp(-2j * np.pi * known[:, None] / fs * t), axis=-1)
         size = n - sum_of_ones(known * n / fs, n)[0] ** 2 / n if constant else n
         f[part] = found
         amp2[part] = np.where(np.isnan(found), 0.0, np.abs(Y / size) ** 2)
-        left = np.sum(x.real**2 + x.imag**2, axis=-1) - size * amp2[part]
-        noise[part] = np.maximum(left, 0.0) / (n - (2.5 if constant else 1.5))
+        noise[part] = np.maximum(energy[part] - size * amp2[part], 0.0) / (
+            n - (2.5 if constant else 1.5)
+        )
     return f.reshape(shape), amp2.reshape(shape), noise.reshape(shape)
+
+
+def _energies(records, n, firsts):
+    """Return the sum of |x|^2 in each window (R, K)."""
+    energy = np.zeros((len(records), records.shape[1] + 1))
+    np.cumsum(records.real**2 + records.imag**2, axis=-1, out=energy[:, 1:])
+    return energy[:, firsts + n] - energy[:, firsts]
 
 
 def _places(records, firsts):

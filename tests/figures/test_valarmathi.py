@@ -5,6 +5,7 @@ import pytest
 
 from dopplerlib.figures import valarmathi as draw
 from dopplerlib.systems import valarmathi as system
+from tests.drawn import check_figures, check_legends
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +28,9 @@ def test_the_best_window_is_marked_on_every_line(table):
 
 
 def test_velocities_are_those_of_both_sensors_and_of_their_fusion(result):
-    figure = draw.velocities([result], run=1)
+    figure = draw.velocities([result], run=1, numbers=[(11, 12, 13)])
+    titles = [ax.get_title("left") for ax in figure.axes[:3]]
+    assert titles == ["Fig 11: sensor 1", "Fig 12: sensor 2", "Fig 13: fused"]
     expected = result.velocity(1, 1), result.velocity(1, 2), result.velocity(3)
     for ax, v in zip(figure.axes[:3], expected, strict=True):
         np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), v[1])
@@ -35,19 +38,44 @@ def test_velocities_are_those_of_both_sensors_and_of_their_fusion(result):
 
 
 def test_a_running_error_is_the_mean_over_the_runs_in_percent(result):
-    (ax,) = draw.cumulative_errors([result], [[(2, 2), (4, 1)]], ncols=1).axes
+    (ax,) = draw.cumulative_errors([result], [[(2, 2), (4, 1)]], ["Fig 15"], ncols=1).axes
+    assert ax.get_title("left") == "Fig 15"
     expected = 100 * result.cee(2, 2).mean(axis=0)
     np.testing.assert_array_equal(ax.get_lines()[0].get_ydata(), expected)
     labels = [line.get_label() for line in ax.get_lines()]
     assert labels == ["algorithm 2, sensor 2", "algorithm 4"]
 
 
-def test_a_sweep_shows_root_mean_squares_over_the_runs():
-    phases = ("maneuver", "constant")
-    found = {(1, p): np.array([[3.0, 4.0], [1.0, 1.0]]) for p in phases}
-    axes = draw.sweep([0, 10], {"path 1": found}, {1: "one"}, 5.0).axes
-    for ax in axes:
-        np.testing.assert_allclose(ax.get_lines()[0].get_ydata(), [np.sqrt(12.5), 1.0])
+def test_a_sweep_shows_medians_with_their_intervals_and_the_limits():
+    study = system.saved_study()
+    figure = draw.sweep(study, 5.0, (15.0, 35.0))
+    shown = [(path, "maneuver") for path in study.paths] + [("path 2", "constant")]
+    for ax, (path, phase) in zip(figure.axes, shown, strict=True):
+        for algorithm, line, band in zip(
+            system.ALGORITHMS, ax.get_lines(), ax.collections, strict=False
+        ):
+            runs = study.of(phase, path, algorithm)
+            np.testing.assert_array_equal(line.get_ydata(), np.median(runs, axis=-1))
+            ends = band.get_paths()[0].vertices[:, 1]
+            # Of 100 runs, the 40th and the 61st.
+            assert ends.min() == np.sort(runs)[:, 39].min()
+            assert ends.max() == np.sort(runs)[:, 60].max()
+        assert [line.get_xdata()[0] for line in ax.get_lines()[-2:]] == [15, 35]
+
+
+def test_failures_are_drawn_in_percent_with_their_intervals():
+    shares = system.failed_shares()
+    figure = draw.failures(shares, 0.05)
+    assert [ax.get_title("left") for ax in figure.axes] == ["path 1", "path 2", "fighter"]
+    for ax in figure.axes:
+        for algorithm, line, band in zip(
+            system.ALGORITHMS, ax.get_lines(), ax.collections, strict=False
+        ):
+            snrs_db, found = shares[ax.get_title("left"), algorithm]
+            np.testing.assert_array_equal(line.get_xdata(), snrs_db)
+            np.testing.assert_allclose(line.get_ydata(), [100 * one.value for one in found])
+            ends = band.get_paths()[0].vertices[:, 1]
+            assert ends.max() == pytest.approx(100 * max(one.high for one in found))
 
 
 def test_every_path_and_both_correlations_have_their_line():
@@ -56,3 +84,19 @@ def test_every_path_and_both_correlations_have_their_line():
     np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), several[1].v)
     (ax,) = draw.correlation(np.array([1.0, 0.1]), np.array([1.0, 0.2])).axes
     np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), [1.0, 0.2])
+
+
+def test_every_figure_fits_the_page_and_its_legend_names_what_is_drawn(table, result):
+    shares = system.failed_shares()
+    figures = {
+        "paths": draw.paths([result.path]),
+        "window_error": draw.window_error(table, 30.0),
+        "velocities": draw.velocities([result]),
+        "cumulative_errors": draw.cumulative_errors([result], [[(1, 1), (3, 1)]], ncols=1),
+        "sweep": draw.sweep(system.saved_study(), 5.0, (15.0, 35.0)),
+        "failures": draw.failures(shares, 0.05),
+        "correlation": draw.correlation(np.ones(3), np.ones(3)),
+    }
+    check_figures(draw, figures)
+    for name in set(figures) - {"window_error"}:  # its lines are named where they end
+        check_legends(figures[name])

@@ -3,10 +3,23 @@
 Tracking a person using UWB pulse Doppler radar, master's thesis, NTNU Trondheim.
 """
 
-from .experiments import late_radar, usable_ranges
-from .measures import departure, distance_error, over_runs, rmse, usable_range
+from .expected_error import error_area, one_scan_bound
+from .experiments import baseline_sweep, late_radar, refused_scans, usable_ranges
+from .in_the_plane import central_filter, table_3_2
+from .many_detections import managed_tracks, pda_radar
+from .measures import departure, distance_error, rmse, usable_range, usable_range_of_each
 from .one_radar import RadarTrack, filter_radar
-from .published import Settings, deviations, quoted, resolutions, scenario, settings, snr
+from .published import (
+    Settings,
+    audit,
+    deviations,
+    quoted,
+    resolutions,
+    scenario,
+    settings,
+    snr,
+)
+from .resampling import over_runs, rmse_interval, rmse_ratio, usable_interval, usable_ratio
 from .scene import (
     Records,
     maneuver_track,
@@ -16,17 +29,8 @@ from .scene import (
     simulate,
     straight_track,
 )
-from .stand_in import Walk, managed_tracks, pda_radar, walk
-from .two_radars import (
-    PositionTrack,
-    central_filter,
-    error_area,
-    filter_then_triangulate,
-    one_scan_bound,
-    raw_positions,
-    table_3_2,
-    triangulate,
-)
+from .stand_in import Walk, walk
+from .two_radars import PositionTrack, filter_then_triangulate, raw_positions, triangulate
 
 __all__ = [
     "PositionTrack",
@@ -34,6 +38,8 @@ __all__ = [
     "Records",
     "Settings",
     "Walk",
+    "audit",
+    "baseline_sweep",
     "central_filter",
     "departure",
     "deviations",
@@ -51,8 +57,11 @@ __all__ = [
     "quoted",
     "radars",
     "raw_positions",
+    "refused_scans",
     "resolutions",
     "rmse",
+    "rmse_interval",
+    "rmse_ratio",
     "scan_times",
     "scenario",
     "settings",
@@ -61,7 +70,10 @@ __all__ = [
     "straight_track",
     "table_3_2",
     "triangulate",
+    "usable_interval",
     "usable_range",
+    "usable_range_of_each",
     "usable_ranges",
+    "usable_ratio",
     "walk",
 ]

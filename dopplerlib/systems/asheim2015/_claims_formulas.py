@@ -7,13 +7,10 @@ from ...estimation.radial_velocity import radial_velocity_terms
 from ...evaluation.verdicts import Readings
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...model.ranging_noise import detection_probability
+from .expected_error import error_area, one_scan_bound
+from .in_the_plane import polar_jacobian
 from .published import deviations, quoted, scenario, settings, snr
 from .scene import maneuver_track, radars, straight_track
-from .two_radars import (
-    error_area,
-    one_scan_bound,
-    polar_jacobian,
-)
 
 
 def settings_and_formulas():

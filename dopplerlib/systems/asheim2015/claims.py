@@ -8,16 +8,13 @@ from ...estimation.radial_velocity import radial_velocity_update
 from ...evaluation.intervals import share_interval
 from ...evaluation.verdicts import Draws, Readings
 from ._claims_formulas import settings_and_formulas
-from .measures import departure, distance_error, over_runs, usable_range
+from .measures import departure, distance_error, usable_range_of_each
 from .one_radar import filter_radar
 from .published import quoted, scenario, settings
+from .resampling import rmse_ratio, usable_ratio
 from .scene import simulate
 from .stand_in import WALKS, walk
-from .two_radars import (
-    filter_then_triangulate,
-    raw_positions,
-    triangulate,
-)
+from .two_radars import triangulate
 
 LONG = 60.0  # s: a record long enough for every track of the fixed gate to be left
 
@@ -39,134 +36,143 @@ def evidence(*, rng, runs=200):
     """
     _checks.generator("rng", rng)
     simulated, walked, resampled = rng.spawn(3)
+    records = simulate(runs, rng=simulated, duration=LONG)
+    tracks = filtered(records)
     return {
         **settings_and_formulas(),
-        **one_radar(runs, simulated, resampled),
-        **two_radars(runs, simulated, resampled),
+        **one_radar(records, tracks, resampled),
+        **two_radars(records, tracks, resampled),
         **real_radars(2 * runs, walked),
     }
 
 
-def one_radar(runs, rng, resampling):
+def filtered(records):
+    """Return what the filters of both radars make of the records, by settings and variant.
+
+    Parameters
+    ----------
+    records : Records
+        What both radars measured.
+
+    Returns
+    -------
+    dict of str to RadarTrack
+        Each as long as a claim looks at it.
+    """
+
+    def run(name, end, gate="own", **options):
+        return filter_radar(
+            records.until(end).z[..., None, :], settings(name, gate=gate), **options
+        )
+
+    return {
+        "code": run("code", LONG),
+        "code, no gate": run("code", LONG, gate=None),
+        "code, no rate": run("code", 40.0, doppler=False),
+        "code, first used twice": run("code", 5.0, reuse_first=True),
+        "text": run("text", 46.0),
+        "text, no gate": run("text", 46.0, gate=None),
+        "text, no rate": run("text", 40.0, doppler=False),
+    }
+
+
+def one_radar(records, tracks, rng):
     """Return the evidence on the path of a single radar.
 
     Parameters
     ----------
-    runs : int
-        Number of records.
-    rng, resampling : numpy.random.Generator
-        Sources of the noise and of the bootstrap.
+    records : Records
+        What both radars measured.
+    tracks : dict of str to RadarTrack
+        See `filtered`.
+    rng : numpy.random.Generator
+        Source of the bootstrap.
 
     Returns
     -------
     dict
     """
-    records = simulate(runs, rng=rng, duration=LONG)
-    code, no_gate = settings("code"), settings("code", gate=None)
-    z = records.z[..., None, :]
-    gated, free = filter_radar(z, code), filter_radar(z, no_gate)
     t, truth = records.time, records.ranges[..., 0]
-    raw = records.z[..., 0] - truth
-    error = gated.x[..., 0] - truth
-    short = records.until(40.0)
-    z, t40 = short.z[..., None, :], short.time
-    plain = {
-        name: filter_radar(z, settings(name), doppler=False).x[..., 0] - short.ranges[..., 0]
-        for name in ("code", "text")
-    }
-    twice = filter_radar(z[:, :, t40 <= 5], code, reuse_first=True).x[..., 0]
-    twice = twice - truth[:, t <= 5]
+    errors = {name: track.x[..., 0] - truth[:, : track.x.shape[2]]
+              for name, track in tracks.items()}  # fmt: skip
+    errors["measured"] = records.z[..., 0] - truth
 
-    def ratio(a, b, ta, tb, low, high, radar):
-        a, b = _squares(a[:, radar], ta, low, high), _squares(b[:, radar], tb, low, high)
-        return _rms_ratio(a, b, resampling)
+    def ratio(a, b, low, high, radar):
+        # All begin at the first scan; some end sooner.
+        a, b = errors[a][:, radar], errors[b][:, radar]
+        K, middle = min(a.shape[-1], b.shape[-1]), (low + high) / 2
+        return rmse_ratio(a[:, :K], b[:, :K], t[:K], middle, middle - low, rng=rng)
 
-    times = departure(gated.updated, t)
-    ekf_step = _largest_step_difference(records.z[0, 0, :300], code)
+    times = departure(tracks["code"].updated, t)
+    plain = ("code", "text")
     return {
         "kf-improves": Readings(
-            {name: ratio(e, raw, t40, t, 20, 30, 0) for name, e in plain.items()}
+            {name: ratio(f"{name}, no rate", "measured", 20, 30, 0) for name in plain}
         ),
-        "doppler-R1": ratio(error, plain["code"], t, t40, 5, 40, 0),
-        "doppler-R2": ratio(error, plain["code"], t, t40, 5, 40, 1),
+        "doppler-R1": ratio("code", "code, no rate", 5, 40, 0),
+        "doppler-R2": ratio("code", "code, no rate", 5, 40, 1),
         "R1-departs": Draws(times[:, 0]),
         "R1-in-range": Draws(times[:, 0]),
         "R2-departs": Draws(times[:, 1]),
-        "good-snr-R1": ratio(error, raw, t, t, 0, 10, 0),
-        "good-snr-R2": ratio(error, raw, t, t, 0, 10, 1),
-        "follows-R1": ratio(free.x[..., 0] - truth, error, t, t, 49, 50, 0),
-        "follows-R2": ratio(free.x[..., 0] - truth, error, t, t, 49, 50, 1),
-        "first-used-twice": ratio(twice, error, t40[t40 <= 5], t, 0, 5, 0),
-        "ekf-needed": ekf_step,
+        "good-snr-R1": ratio("code", "measured", 0, 10, 0),
+        "good-snr-R2": ratio("code", "measured", 0, 10, 1),
+        "follows-R1": ratio("code, no gate", "code", 49, 50, 0),
+        "follows-R2": ratio("code, no gate", "code", 49, 50, 1),
+        "first-used-twice": ratio("code, first used twice", "code", 0, 5, 0),
+        "ekf-needed": _largest_step_difference(records.z[0, 0, :300], settings("code")),
     }
 
 
-def two_radars(runs, rng, resampling):
+def two_radars(records, tracks, rng):
     """Return the evidence on the triangulated position.
 
     Parameters
     ----------
-    runs : int
-        Number of records.
-    rng, resampling : numpy.random.Generator
-        Sources of the noise and of the bootstrap.
+    records : Records
+        What both radars measured.
+    tracks : dict of str to RadarTrack
+        See `filtered`.
+    rng : numpy.random.Generator
+        Source of the bootstrap.
 
     Returns
     -------
     dict
     """
     q = quoted()
-    records = simulate(runs, rng=rng)
+    records = records.until(scenario()["tracks"]["duration"])
     t, truth, d = records.time, records.truth, records.distance
-    track = filter_radar(records.z[..., None, :], settings("code"))
-    fused = filter_then_triangulate(records, settings("code"), track=track)
-    error = distance_error(fused.p, truth)
-    single = track.x[:, 0, :, 0] - records.ranges[0, :, 0]
-    raw = raw_positions(records)
-    raw_error = distance_error(raw.p, truth)
-    gated_raw = distance_error(raw_positions(records, fused.updated).p, truth)
 
-    def other(end, name, gate="own", **options):
-        part = records.until(end)
-        result = filter_then_triangulate(part, settings(name, gate=gate), **options)
-        return np.pad(
-            distance_error(result.p, part.truth),
-            [(0, 0), (0, len(t) - len(part.time))],
-            constant_values=np.nan,
-        )
+    def position_error(d1, d2):
+        p, valid = triangulate(d1[:, : len(t)], d2[:, : len(t)], records.baseline)
+        return distance_error(p, truth[: p.shape[1]]), p, valid
 
-    no_gate = {name: other(46.0, name, gate=None) for name in ("code", "text")}
-    text, plain = other(46.0, "text"), other(40.0, "code", doppler=False)
+    errors = {name: position_error(*np.moveaxis(track.x[..., 0], 1, 0))[0]
+              for name, track in tracks.items()}  # fmt: skip
+    errors["measured"], raw, valid = position_error(*np.moveaxis(records.z[..., 0], 1, 0))
+    inside = tracks["code"].updated[:, :, : len(t)].all(axis=1)
+    errors["inside the gate"] = np.where(inside, errors["measured"], np.nan)
+    single = tracks["code"].x[:, 0, : len(t), 0] - records.ranges[0, :, 0]
     at = int(np.argmin(np.hypot(*(truth[:, :2] - q["range"]["compared"]).T)))
-    x_error = np.abs(raw.p[:, at, 0] - truth[at, 0])
+    later = errors["measured"][:, (t >= 31) & (t <= 33)]
     late = (t >= 40) & (t < 50)
 
     def ratio(a, b, low, high):
-        return _rms_ratio(_squares(a, t, low, high), _squares(b, t, low, high), resampling)
+        a, b = errors[a], errors[b]
+        K, middle = min(a.shape[-1], b.shape[-1]), (low + high) / 2
+        return rmse_ratio(a[:, :K], b[:, :K], t[:K], middle, middle - low, rng=rng)
 
-    def first_beyond(e):
-        return np.minimum([usable_range(one[None], t, d) for one in e], d[-1])
-
-    def range_ratio(a, b):
-        return over_runs(
-            lambda a, b: usable_range(a, t, d) / min(usable_range(b, t, d), d[-1]),
-            a,
-            b,
-            rng=resampling,
-        )
-
-    total, count = _squares(raw_error, t, 31, 33)
     return {
-        "useful-range": Draws(first_beyond(error)),
-        "raw-range": range_ratio(raw_error, error),
-        "fusion-shortens": range_ratio(error, single),
-        "raw-at-four": Draws(x_error),
-        "raw-beyond-four": Draws(np.sqrt(total / count)),
-        "gate-triangulation": ratio(no_gate["code"], error, 44, 46),
-        "gate-triangulation-text": ratio(no_gate["text"], text, 44, 46),
-        "gate-measurements": ratio(raw_error, gated_raw, 44, 46),
-        "doppler-position": ratio(error, plain, 25, 40),
-        "circles-meet": share_interval(raw.valid[:, late][:, ::20].ravel()),
+        "useful-range": Draws(np.minimum(usable_range_of_each(errors["code"], t, d), d[-1])),
+        "raw-range": usable_ratio(errors["measured"], errors["code"], t, d, rng=rng),
+        "fusion-shortens": usable_ratio(errors["code"], single, t, d, rng=rng),
+        "raw-at-four": Draws(np.abs(raw[:, at, 0] - truth[at, 0])),
+        "raw-beyond-four": Draws(np.sqrt(np.mean(later**2, axis=1))),
+        "gate-triangulation": ratio("code, no gate", "code", 44, 46),
+        "gate-triangulation-text": ratio("text, no gate", "text", 44, 46),
+        "gate-measurements": ratio("measured", "inside the gate", 44, 46),
+        "doppler-position": ratio("code", "code, no rate", 25, 40),
+        "circles-meet": share_interval(valid[:, late][:, ::20].ravel()),
     }
 
 
@@ -237,18 +243,3 @@ def _largest_step_difference(z, own):
         )
         largest = max(largest, float(np.abs(x - x_pseudo).max()))
     return round(largest, 9)
-
-
-def _squares(error, time, low, high):
-    """Return sum and number of squares of each run between two times, NaN left out."""
-    there = error[:, (time >= low) & (time <= high)]
-    return np.nansum(np.square(there), axis=-1), np.isfinite(there).sum(axis=-1)
-
-
-def _rms_ratio(a, b, rng):
-    return over_runs(
-        lambda sa, na, sb, nb: np.sqrt(sa.sum() / na.sum() / (sb.sum() / nb.sum())),
-        *a,
-        *b,
-        rng=rng,
-    )

@@ -3,10 +3,12 @@
 import numpy as np
 
 from ... import _checks
-from .measures import distance_error, over_runs, usable_range
+from .in_the_plane import central_filter
+from .measures import distance_error
 from .published import scenario, settings
+from .resampling import over_runs, rmse_interval, usable_interval
 from .scene import simulate, straight_track
-from .two_radars import central_filter, filter_then_triangulate
+from .two_radars import filter_then_triangulate
 
 
 def usable_ranges(records, tracks, *, rng):
@@ -27,10 +29,8 @@ def usable_ranges(records, tracks, *, rng):
         In m; infinite if the error stays below the limit.
     """
     return {
-        label: over_runs(
-            lambda e: usable_range(e, records.time, records.distance),
-            distance_error(track.p, records.truth),
-            rng=rng,
+        label: usable_interval(
+            distance_error(track.p, records.truth), records.time, records.distance, rng=rng
         )
         for label, track in tracks.items()
     }
@@ -85,4 +85,78 @@ def late_radar(offsets, runs, *, rng, window=(25.0, 30.0)):
         ):
             squares = np.mean(distance_error(track.p, truth)[:, then] ** 2, axis=1)
             found[name].append(over_runs(lambda s: np.sqrt(s.mean()), squares, rng=child))
+    return found
+
+
+def baseline_sweep(baselines, runs, *, rng, at=28.0, half_width=2.0):
+    """Return position errors of two trackers for several distances between the radars.
+
+    Parameters
+    ----------
+    baselines : array_like, shape (M,)
+        In m.
+    runs : int
+        Number of records for each.
+    rng : numpy.random.Generator
+        Source of the noise and of the resampling.
+    at, half_width : float
+        Errors are averaged from `at` - `half_width` to `at` + `half_width`, in s.
+
+    Returns
+    -------
+    dict of str to list of Estimate
+        Root mean square errors in m by tracker, one for each baseline, with one scan a second and
+        "modern" settings.
+    """
+    baselines = _checks.finite("baselines", baselines, (None,))
+    T = scenario()["real"]["T"]
+    own = settings("modern", T)
+    found = {"filter then triangulate": [], "one filter for both": []}
+    for baseline, child in zip(baselines, rng.spawn(len(baselines)), strict=True):
+        records = simulate(
+            runs, rng=child, T=T, duration=at + half_width, baseline=float(baseline), rate="exact"
+        )
+        tracks = filter_then_triangulate(records, own), central_filter(records, own)
+        for values, track in zip(found.values(), tracks, strict=True):
+            error = distance_error(track.p, records.truth)
+            values.append(rmse_interval(error, records.time, at, half_width, rng=child))
+    return found
+
+
+def refused_scans(starts, densities, runs, *, rng, duration=10.0, floor=(0.0, 0.0)):
+    """Return how much of a radar the gate of a single filter refuses after a start at rest.
+
+    Parameters
+    ----------
+    starts : array_like, shape (M,)
+        How far in front of the origin the filter starts, in m; the person starts at the origin.
+    densities : array_like, shape (J,)
+        Spectral densities of the acceleration in m^2/s^3.
+    runs : int
+        Number of records; all combinations see the same.
+    rng : numpy.random.Generator
+        Source of the noise and of the resampling.
+    duration : float
+        Length of the records in s.
+    floor : tuple of float, or None
+        Least standard deviations in m and m/s; that of the scenario if None.
+
+    Returns
+    -------
+    list of list of Estimate
+        Shares of the scans of radar 2 that the gate dropped, for each start and density.
+    """
+    starts, densities = (
+        _checks.finite(name, values, (None,))
+        for name, values in (("starts", starts), ("densities", densities))
+    )
+    records = simulate(runs, rng=rng, duration=duration, rate="exact")
+    found = []
+    for y in starts:
+        row = []
+        for q in densities:
+            own = settings("modern", q=float(q), floor=floor)
+            used = central_filter(records, own, start=[0.0, y, 0.0, 0.0]).updated[:, 1]
+            row.append(over_runs(np.mean, (~used).mean(axis=1), rng=rng))
+        found.append(row)
     return found

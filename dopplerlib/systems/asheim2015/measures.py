@@ -3,7 +3,6 @@
 import numpy as np
 
 from ... import _checks
-from ...evaluation.intervals import Estimate
 
 
 def departure(updated, time, scans=10):
@@ -69,8 +68,7 @@ def rmse(error, time, at, half_width=0.5):
     -------
     float
     """
-    near = np.abs(np.asarray(time) - at) <= half_width + 1e-9
-    return float(np.sqrt(np.nanmean(np.square(np.asarray(error)[:, near]))))
+    return float(np.sqrt(np.nanmean(np.square(_near(error, time, at, half_width)))))
 
 
 def usable_range(error, time, distance, limit=1.0, after=5.0, window=1.0):
@@ -97,50 +95,45 @@ def usable_range(error, time, distance, limit=1.0, after=5.0, window=1.0):
         The distance at which the moving average of the root mean square error over runs first is
         above the limit; infinite if it never is.
     """
-    time, distance = np.asarray(time), np.asarray(distance)
-    there = np.isfinite(error)
-    total = np.sum(np.where(there, error, 0.0) ** 2, axis=0)
-    # A scan without any estimate counts as unusable.
-    curve = np.sqrt(np.where(there.any(axis=0), total / np.maximum(there.sum(axis=0), 1), np.inf))
-    scans = max(1, round(window / (time[1] - time[0])))
-    smooth = np.convolve(curve, np.ones(scans), mode="same")
-    # At the ends the window is not full.
-    inside = np.convolve(np.ones(len(curve)), np.ones(scans), mode="same")
-    above = (smooth / inside > limit) & (time >= after)
-    return float(distance[np.argmax(above)]) if above.any() else np.inf
+    total, count = (part.sum(axis=0) for part in _squares(error))
+    return float(_first_above(total, count, time, distance, limit, after, window))
 
 
-def over_runs(statistic, *arrays, rng, resamples=400, confidence=0.95):
-    """Return a statistic of all runs, and its interval when runs are drawn with replacement.
+def usable_range_of_each(error, time, distance):
+    """Return `usable_range` of every run by itself.
 
     Parameters
     ----------
-    statistic : callable
-        Takes the arrays, returns a float.
-    *arrays : array_like, shape (runs, ...)
-        Each with the runs first; they are drawn together.
-    rng : numpy.random.Generator
-        Source of the resampling.
-    resamples : int
-        Number of resamples.
-    confidence : float
-        Share of resamples inside the interval.
+    error, time, distance
+        See `usable_range`.
 
     Returns
     -------
-    Estimate
-        Its interval is that between percentiles of the resampled statistic.
-
-    Notes
-    -----
-    The percentile bootstrap of Efron and Tibshirani (1993), Section 13.3.
+    ndarray, shape (runs,)
+        In m; infinite where the error of a run stays below the limit.
     """
-    _checks.generator("rng", rng)
-    arrays = [np.asarray(array) for array in arrays]
-    runs = len(arrays[0])
-    draws = rng.integers(runs, size=(resamples, runs))
-    values = [statistic(*(array[draw] for array in arrays)) for draw in draws]
-    tail = 50 * (1 - _checks.probability("confidence", confidence))
-    # "lower": an infinite value next to a finite one must not make their mean NaN.
-    low, high = np.percentile(values, [tail, 100 - tail], method="lower")
-    return Estimate(float(statistic(*arrays)), float(low), float(high))
+    return _first_above(*_squares(error), time, distance)
+
+
+def _near(error, time, at, half_width):
+    return np.asarray(error)[:, np.abs(np.asarray(time) - at) <= half_width + 1e-9]
+
+
+def _squares(error):
+    """Return the squares of all errors, 0 where there is none, and where there is one."""
+    there = np.isfinite(error)
+    return np.where(there, error, 0.0) ** 2, there.astype(float)
+
+
+def _first_above(total, count, time, distance, limit=1.0, after=5.0, window=1.0):
+    """Return the distance at which root mean squares (..., K) are first above the limit."""
+    time, distance = np.asarray(time), np.asarray(distance)
+    # A scan without any estimate counts as unusable.
+    curve = np.sqrt(np.where(count > 0, total / np.maximum(count, 1), np.inf))
+    scans = max(1, round(window / (time[1] - time[0])))
+    # The average is over those of the scans around that are there: at the ends there are fewer.
+    before, behind = scans // 2, (scans - 1) // 2
+    smooth = np.stack([curve[..., max(0, k - before) : k + behind + 1].mean(axis=-1)
+                       for k in range(len(time))], axis=-1)  # fmt: skip
+    above = (smooth > limit) & (time >= after)
+    return np.where(above.any(axis=-1), distance[np.argmax(above, axis=-1)], np.inf)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ... import _checks
-from ...estimation.linear_kalman import _predict, _update
 from ...tracking.association import nearest_neighbor
 from ...tracking.gates import chi2_gate, fixed_box_gate
 from .published import Settings
@@ -71,8 +70,9 @@ def filter_radar(
 
     Notes
     -----
-    Åsheim (2015), Appendix A.5 to A.7, with covariances in the form of Joseph. The range and the
-    range rate are independent, so that both at once is the same as one after the other.
+    Åsheim (2015), Appendix A.5 to A.7. The noise of range and range rate is independent, so that
+    updating with the one and then with the other, as Table 3.3 does, is the same as with both at
+    once; and each such update is one of scalars, without a matrix to invert.
     """
     z = _checks.real("detections", detections)
     _checks.check_shape("detections", z, (None, None, 2))
@@ -80,18 +80,17 @@ def filter_radar(
     _checks.one_of("association", association, ("gate-first", "nearest-first"))
     batch, K = z.shape[:-3], z.shape[-3]
     x = _start(z[..., 0, :, :], x0)
-    P = np.broadcast_to(settings.P0, (*batch, 2, 2))
-    F = np.array([[1.0, settings.T], [0.0, 1.0]])
-    H = np.eye(2)[: 2 if doppler else 1]
+    P = np.broadcast_to(settings.P0[[0, 0, 1], [0, 1, 1]], (*batch, 3))
+    m = 2 if doppler else 1
     steps = []
     for k in range(K):
         if k == 0 and not reuse_first:
             steps.append((x, P, x, np.ones(batch, bool), np.full(batch, np.nan)))
             continue
-        x, P = _predict(x, P, F, settings.Q)
-        R = settings.R(x[..., 0])[..., None] * np.eye(2)
+        x, P = _predicted(x, P, settings)
+        R = settings.R(x[..., 0])
         nu = z[..., k, :, :] - x[..., None, :]
-        nis, accept = _gate(nu, P, R, settings, 2 if doppler else 1)
+        nis, accept = _gate(nu, P, R, settings, m)
         if k == 0:
             accept = np.isfinite(nis)
         if association == "gate-first":
@@ -102,20 +101,42 @@ def filter_radar(
         used = (index >= 0) & np.take_along_axis(accept, picked, -1)[..., 0]
         chosen = np.take_along_axis(z[..., k, :, :], picked[..., None], -2)[..., 0, :]
         chosen = np.where(used[..., None], chosen, np.nan)
-        m = len(H)
-        measured = np.where(used[..., None], chosen, 0.0)[..., :m]
-        xu, Pu, _, _ = _update(x, P, measured, H, R[..., :m, :m])
-        x = np.where(used[..., None], xu, x)
-        P = np.where(used[..., None, None], Pu, P)
+        for i in range(m):
+            x, P = _updated(x, P, i, chosen[..., i], R[..., i], used)
         with np.errstate(invalid="ignore"):
             least = np.fmin.reduce(nis, axis=-1)
         steps.append((x, P, chosen, used, least))
-    stacked = (np.stack(part, axis=len(batch)) for part in zip(*steps, strict=True))
-    return RadarTrack(*stacked)
+    x, P, *rest = (np.stack(part, axis=len(batch)) for part in zip(*steps, strict=True))
+    return RadarTrack(x, P[..., [0, 1, 1, 2]].reshape(*P.shape[:-1], 2, 2), *rest)
+
+
+def _predicted(x, P, settings):
+    """Move states (..., 2) and entries dd, dv, vv of their covariances (..., 3) on by T."""
+    T, Q = settings.T, settings.Q
+    d, v = x[..., 0], x[..., 1]
+    dd, dv, vv = P[..., 0], P[..., 1], P[..., 2]
+    x = np.stack([d + T * v, v], axis=-1)
+    P = [dd + 2 * T * dv + T * T * vv + Q[0, 0], dv + T * vv + Q[0, 1], vv + Q[1, 1]]
+    return x, np.stack(P, axis=-1)
+
+
+def _updated(x, P, i, z, r, used):
+    """Update with a measurement (...) of component i, of variance r, where it is used."""
+    own, other, cross = P[..., 2 * i], P[..., 2 - 2 * i], P[..., 1]
+    S = own + r
+    # Where nothing is used the gain is zero and nothing shrinks.
+    nu, shrink = np.where(used, z - x[..., i], 0.0), np.where(used, r / S, 1.0)
+    lost = np.where(used, cross * cross / S, 0.0)
+    gain = [own / S, cross / S]
+    x = x + np.stack(gain if i == 0 else gain[::-1], axis=-1) * nu[..., None]
+    kept = [shrink * own, shrink * cross, other - lost]
+    return x, np.stack(kept if i == 0 else kept[::-1], axis=-1)
 
 
 def _gate(nu, P, R, settings, m):
-    a, b, c = (P[..., i, j, None] + R[..., i, j, None] for i, j in ((0, 0), (0, 1), (1, 1)))
+    a, b, c = (
+        part[..., None] for part in (P[..., 0] + R[..., 0], P[..., 1], P[..., 2] + R[..., 1])
+    )
     d, v = nu[..., 0], nu[..., 1]
     there = np.isfinite(d) & np.isfinite(v)
     # The quadratic form of the inverse of [a b; b c], written out: a solver takes longer.

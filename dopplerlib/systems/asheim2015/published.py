@@ -78,6 +78,18 @@ def quoted():
     return tomllib.loads((DATA / "quoted.toml").read_text(encoding="utf-8"))
 
 
+def audit():
+    """Return what contradicts or is missing in the thesis, and what we do about it.
+
+    Returns
+    -------
+    list of dict of str to str
+        The tables of ``data/asheim2015/audit.toml``: where it stands (`place`), what is `told` and
+        what `found`, our `choice`, and the label of the chapter that treats it (`page`).
+    """
+    return tomllib.loads((DATA / "audit.toml").read_text(encoding="utf-8"))["slip"]
+
+
 def resolutions():
     """Return the resolutions in range and in velocity, Eqs 5.3 and 5.5 with correct exponents.
 

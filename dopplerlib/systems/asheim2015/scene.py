@@ -6,7 +6,8 @@ import numpy as np
 
 from ... import _checks
 from ...model.range_rate import range_rate
-from .published import deviations, scenario
+from ...model.ranging_noise import detection_probability
+from .published import deviations, scenario, snr
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Records:
     ranges : ndarray, shape (2, K, 2)
         True range and range rate for each radar, at the times when it measures.
     z : ndarray, shape (runs, 2, K, 2)
-        Measured range in m and range rate in m/s.
+        Measured range in m and range rate in m/s; NaN where nothing was detected.
     offset : float
         How much later than the first radar the second one measures, in s.
     """
@@ -166,6 +167,7 @@ def simulate(
     rate="difference",
     correlated=1,
     offset=0.0,
+    false_alarm=None,
 ):
     """Return records of both radars, as Appendix A simulates them.
 
@@ -193,6 +195,10 @@ def simulate(
         share of it. 1 is white noise.
     offset : float
         How much later than the first radar the second one measures, in s.
+    false_alarm : float, optional
+        If given, a scan has a detection only with the chance that a threshold with this probability
+        of a false alarm leaves at the signal-to-noise ratio there, and is NaN otherwise. If None,
+        as in the thesis, each scan has one, however weak the echo.
 
     Returns
     -------
@@ -224,7 +230,12 @@ def simulate(
     if correlated > 1:
         total = np.cumsum(np.pad(noise, [(0, 0), (0, 0), (1, 0), (0, 0)]), axis=2)
         noise = (total[:, :, correlated:] - total[:, :, :-correlated]) / np.sqrt(correlated)
-    return Records(time, track(time), sensors, ranges, ranges + sigma * noise, offset)
+    z = ranges + sigma * noise
+    if false_alarm is not None:
+        chance = detection_probability((law or snr)(ranges[..., 0]), false_alarm)
+        seen = np.stack([child.random(chance.shape) < chance for child in rng.spawn(runs)])
+        z = np.where(seen[..., None], z, np.nan)
+    return Records(time, track(time), sensors, ranges, z, offset)
 
 
 def noisy_positions(track, T=None, *, rng, same=False):

@@ -3,7 +3,7 @@
 Valarmathi, Emmanuel and Christopher: Doppler information optimization through fusion algorithms.
 """
 
-from .algorithms import ALGORITHMS, AlgorithmRuns, run_algorithms, snr_sweep
+from .algorithms import ALGORITHMS, AlgorithmRuns, run_algorithms
 from .claims import evidence
 from .doppler_filter import FilteredDoppler, doppler_filter, measurement_variance
 from .filters import VelocityTrack, filter_velocity
@@ -12,13 +12,23 @@ from .modern import (
     fusion_errors,
     fusion_summary,
     fusions,
+    gains,
     honesty,
     merged_doppler,
     supposed_world,
 )
 from .noise import residual_variance, updated_residual
 from .published import DATA, VelocityPath, chosen, stated, velocity_path
-from .window_law import best_window, law_exponents, law_rmse, linear_cost
+from .study import (
+    Study,
+    cell_measures,
+    failed_shares,
+    failure_limit,
+    saved_study,
+    study_cell,
+    study_table,
+)
+from .window_law import best_window, law_exponents, law_rmse, linear_cost, plane_error
 from .windows import WindowTable, choose_window, cumulative_error, window_table
 
 __all__ = [
@@ -26,30 +36,38 @@ __all__ = [
     "DATA",
     "AlgorithmRuns",
     "FilteredDoppler",
+    "Study",
     "VelocityPath",
     "VelocityTrack",
     "WindowTable",
     "best_window",
+    "cell_measures",
     "choose_window",
     "chosen",
     "cumulative_error",
     "doppler_filter",
     "error_correlation",
     "evidence",
+    "failed_shares",
+    "failure_limit",
     "filter_velocity",
     "fusion_errors",
     "fusion_summary",
     "fusions",
+    "gains",
     "honesty",
     "law_exponents",
     "law_rmse",
     "linear_cost",
     "measurement_variance",
     "merged_doppler",
+    "plane_error",
     "residual_variance",
     "run_algorithms",
-    "snr_sweep",
+    "saved_study",
     "stated",
+    "study_cell",
+    "study_table",
     "supposed_world",
     "updated_residual",
     "velocity_path",

@@ -134,7 +134,8 @@ def run_algorithms(name, snr_db, runs, table, *, rng):
     table : WindowTable
         For the choice of windows.
     rng : numpy.random.Generator
-        Source of randomness.
+        Source of randomness; every run has a child of its own, so that the first runs are the
+        same however many follow.
 
     Returns
     -------
@@ -146,9 +147,11 @@ def run_algorithms(name, snr_db, runs, table, *, rng):
         If `name` is unknown or another argument is refused by what it is for.
     """
     path, own, said = velocity_path(name), chosen(), stated()
-    x = iq_from_velocity(
-        np.stack([path.v, path.v]), said.T, own.wavelength, snr_db, rng=rng, size=runs
-    )
+    both = np.stack([path.v, path.v])
+    x = np.stack([
+        iq_from_velocity(both, said.T, own.wavelength, snr_db, rng=child)
+        for child in rng.spawn(_checks.whole_number("runs", runs))
+    ])  # fmt: skip
     doppler = doppler_filter(x, table.windows)
     return AlgorithmRuns(
         path,
@@ -159,26 +162,3 @@ def run_algorithms(name, snr_db, runs, table, *, rng):
         filter_velocity(doppler, snr_db, table=table, feedback="fused"),
         filter_velocity(doppler, snr_db, delayed=True),
     )
-
-
-def snr_sweep(name, snrs_db, runs, table, *, rng):
-    """Return the errors of all algorithms at several signal-to-noise ratios.
-
-    Parameters
-    ----------
-    name, runs, table, rng
-        See `run_algorithms`; every ratio has a generator of its own.
-    snrs_db : sequence of float
-        Signal-to-noise ratios of a sample in dB.
-
-    Returns
-    -------
-    dict of (int, str) to ndarray, shape (ratios, runs)
-        Root mean square errors in m/s by algorithm and phase: "all", "maneuver" or "constant".
-    """
-    found = {(a, phase): [] for a in ALGORITHMS for phase in ("all", "maneuver", "constant")}
-    for snr_db, own in zip(snrs_db, rng.spawn(len(snrs_db)), strict=True):
-        result = run_algorithms(name, snr_db, runs, table, rng=own)
-        for (algorithm, phase), errors in found.items():
-            errors.append(result.rmse(algorithm, phase))
-    return {key: np.array(errors) for key, errors in found.items()}

@@ -51,8 +51,9 @@ def fusions(doppler, snr_db, *, delayed=True, hop=1):
     Returns
     -------
     dict of str to types.SimpleNamespace
-        For each way states ``x (runs, K, 2)`` and covariances ``P (1, K, 2, 2)``, which are the
-        same for all runs. The first estimates, up to the first scored sample, are left out.
+        For each way states ``x (runs, K, 2)``, covariances ``P (1, K, 2, 2)``, which are the
+        same for all runs, and the numbers ``sample (K,)`` of the samples that they belong to. The
+        first estimates, up to the first scored sample, are left out.
     """
     settings = dict(delayed=delayed, hop=hop)
     track = filter_velocity(doppler, snr_db, **settings)
@@ -70,7 +71,8 @@ def fusions(doppler, snr_db, *, delayed=True, hop=1):
         "Bar-Shalom and Campo": fuse_state_vectors(x1, P1, x2, P2, track.P12[:1, late]),
         "measurement fusion": (center.x[:, 0, late], center.P[:1, 0, late]),
     }
-    return {name: SimpleNamespace(x=x, P=P) for name, (x, P) in ways.items()}
+    sample = (doppler.first + hop * np.arange(track.x.shape[2]))[late]
+    return {name: SimpleNamespace(x=x, P=P, sample=sample) for name, (x, P) in ways.items()}
 
 
 def supposed_world(runs, samples, snr_db, *, rng):
@@ -143,7 +145,7 @@ def fusion_errors(ways, path):
     Parameters
     ----------
     ways : dict of str to types.SimpleNamespace
-        As `fusions` returns it, with every sample used.
+        As `fusions` returns it.
     path : VelocityPath
         The truth.
 
@@ -155,12 +157,55 @@ def fusion_errors(ways, path):
     phases = {"maneuver (m/s)": path.maneuver, "constant velocity (m/s)": path.constant}
     rows = {}
     for name, one in ways.items():
-        first = len(path.v) - one.x.shape[1]
-        square = (one.x[..., 0] - path.v[first:]) ** 2
+        square = (one.x[..., 0] - path.v[one.sample]) ** 2
         rows[name] = {
-            phase: np.sqrt(square[:, part[first:]].mean(axis=-1)) for phase, part in phases.items()
+            phase: np.sqrt(square[:, part[one.sample]].mean(axis=-1))
+            for phase, part in phases.items()
         }
     return rows
+
+
+def gains(doppler, snr_db, path):
+    """Return what each step from the document's first algorithm on gains, alone and together.
+
+    Parameters
+    ----------
+    doppler : FilteredDoppler
+        Measurements on a path, ``v`` of shape (W, runs, 2, K).
+    snr_db : float
+        Signal-to-noise ratio of both sensors.
+    path : VelocityPath
+        The truth.
+
+    Returns
+    -------
+    dict of str to dict of str to ndarray, shape (runs,)
+        By the step, root mean square errors in m/s in the maneuver and at constant velocity, and
+        beside each the error of one sensor with a fixed window over it, in the same run.
+    """
+    rows = {}
+    for delayed, hop in ((False, 1), (False, chosen().fixed_window), (True, 1),
+                         (True, chosen().fixed_window)):  # fmt: skip
+        told = ["delay in H"] * delayed + ["one measurement a window"] * (hop > 1)
+        for way, errors in fusion_errors(
+            fusions(doppler, snr_db, delayed=delayed, hop=hop), path
+        ).items():
+            if hop > 1 and way not in ("one sensor", "measurement fusion"):
+                continue  # as without
+            name = ", ".join(told + [way] * (way != "one sensor"))
+            rows[name or "one sensor, fixed window"] = errors
+    start = rows["one sensor, fixed window"]
+    return {
+        name: {
+            key: value
+            for phase in start
+            for key, value in (
+                (phase, errors[phase]),
+                (f"gain, {phase.partition(' (')[0]}", start[phase] / errors[phase]),
+            )
+        }
+        for name, errors in rows.items()
+    }
 
 
 def honesty(track, v, skip):

@@ -6,6 +6,7 @@ from ... import _checks
 from ...signal.laws import optimal_window_end
 from .doppler_filter import measurement_variance
 from .published import chosen, stated
+from .windows import rising
 
 
 def best_window(acceleration, snr_db):
@@ -57,7 +58,38 @@ def law_rmse(window, acceleration, snr_db):
 
 
 def linear_cost(accelerations, snrs_db, points=40):
-    """Return what linear interpolation of the best window costs between four corners.
+    """Return what linear interpolation of the best window costs between some nodes.
+
+    Parameters
+    ----------
+    accelerations, snrs_db : sequence of float
+        Nodes at which the best window is known, rising: two or more of each.
+    points : int
+        Points along each axis, from the first node to the last.
+
+    Returns
+    -------
+    ndarray, shape (points, points)
+        Error with the interpolated window over the error with the best one.
+
+    Raises
+    ------
+    ValueError
+        If nodes do not rise, are less than two, or the accelerations begin at zero.
+    """
+    accelerations = rising("accelerations", accelerations)
+    snrs_db = rising("snrs_db", snrs_db)
+    a = np.linspace(accelerations[0], accelerations[-1], points)
+    s = np.linspace(snrs_db[0], snrs_db[-1], points)
+    nodes = best_window(accelerations[:, None], snrs_db)
+    rows = np.stack([np.interp(a, accelerations, column) for column in nodes.T], axis=-1)
+    linear = np.stack([np.interp(s, snrs_db, row) for row in rows])
+    a = a[:, None]
+    return law_rmse(linear, a, s) / law_rmse(best_window(a, s), a, s)
+
+
+def plane_error(accelerations, snrs_db, points=40):
+    """Return how far the plane that fits the best windows best is off, relative to them.
 
     Parameters
     ----------
@@ -69,22 +101,22 @@ def linear_cost(accelerations, snrs_db, points=40):
     Returns
     -------
     ndarray, shape (points, points)
-        Error with the interpolated window over the error with the best one.
+        The plane, in acceleration and dB, over the best window, less one.
 
     Raises
     ------
     ValueError
         If a range does not rise, or the accelerations begin at zero.
     """
-    low, high = _checks.increasing_pair("accelerations", accelerations)
-    begin, end = _checks.increasing_pair("snrs_db", snrs_db)
-    u, t = np.linspace(0, 1, points)[:, None], np.linspace(0, 1, points)
-    corner = {(a, s): best_window(a, s) for a in (low, high) for s in (begin, end)}
-    linear = (1 - u) * ((1 - t) * corner[low, begin] + t * corner[low, end]) + u * (
-        (1 - t) * corner[high, begin] + t * corner[high, end]
+    a, s = np.meshgrid(
+        np.linspace(*_checks.increasing_pair("accelerations", accelerations), points),
+        np.linspace(*_checks.increasing_pair("snrs_db", snrs_db), points),
+        indexing="ij",
     )
-    a, s = low + u * (high - low), begin + t * (end - begin)
-    return law_rmse(linear, a, s) / law_rmse(best_window(a, s), a, s)
+    best = best_window(a, s)
+    design = np.stack([a, s, np.ones_like(a)], axis=-1)
+    weights, *_ = np.linalg.lstsq(design.reshape(-1, 3), best.ravel())
+    return design @ weights / best - 1
 
 
 def law_exponents(table):

@@ -118,10 +118,10 @@ def window_table(
     from .filters import filter_velocity  # it imports this module
 
     own, said = chosen(), stated()
-    accelerations = _rising(
+    accelerations = rising(
         "accelerations", own.table_accelerations if accelerations is None else accelerations
     )
-    snrs_db = _rising("snrs_db", own.table_snrs_db if snrs_db is None else snrs_db)
+    snrs_db = rising("snrs_db", own.table_snrs_db if snrs_db is None else snrs_db)
     _checks.one_of("judge", judge, ("measurement", "filter"))
     windows = np.array(own.windows if windows is None else windows)
     begin = own.scored * said.T
@@ -175,7 +175,8 @@ def choose_window(table, acceleration, snr_db):
     return table.windows[np.array(found, int).reshape(a.shape)]
 
 
-def _rising(name, values):
+def rising(name, values):
+    """Return `values` as an array, or raise unless they rise and are at least two."""
     array = _checks.finite(name, values, (None,))
     if array.ndim != 1 or len(array) < 2 or (np.diff(array) <= 0).any():
         raise ValueError(f"{name} must rise and hold at least two numbers, got {array.tolist()}")

@@ -39,3 +39,23 @@ def test_the_bound_of_a_scan_is_attained_by_measured_positions():
     bound = thesis.one_scan_bound(p)
     spread = np.sqrt((np.outer(np.diag(bound), np.diag(bound)) + bound**2) / 2000)
     assert (np.abs(C - bound) < 5 * spread).all()
+
+
+def test_a_longer_baseline_helps_and_both_radars_in_one_filter_need_it_less():
+    """A quarter of a meter and two meters: errors differ by factors of 3 and more."""
+    found = thesis.baseline_sweep([0.25, 2.0], 40, rng=np.random.default_rng(6))
+    apart, together = found.values()
+    for short, long in (apart, together):
+        assert short.low > long.high
+    assert apart[0].value / apart[1].value > 1.2 * together[0].value / together[1].value
+
+
+def test_what_the_gate_refuses_depends_on_the_start_and_not_with_a_floor():
+    """Nearly all scans from 5 cm in front with little process noise, hardly any from 1 cm.
+
+    With the floor fewer than the gate is set to lose (0.1 %) and five of its standard errors.
+    """
+    (near,), (far,) = thesis.refused_scans([0.01, 0.05], [1e-4], 20, rng=np.random.default_rng(7))
+    assert near.high < 0.05 and far.low > 0.5
+    ((kept,),) = thesis.refused_scans([0.05], [1e-4], 20, rng=np.random.default_rng(8), floor=None)
+    assert kept.value < 0.005

@@ -42,3 +42,46 @@ def test_a_mean_of_normal_values_has_the_interval_that_students_t_gives():
     half = 1.97 * values.std(ddof=1) / np.sqrt(200)
     assert found.value == values.mean()
     assert found.high - found.low == pytest.approx(2 * half, rel=0.2)
+
+
+@pytest.fixture(scope="module")
+def errors():
+    time = np.arange(0, 30, 0.5)
+    a = np.random.default_rng(3).normal(size=(50, 60)) * np.linspace(0, 2, 60)
+    a[:, ::7] = np.nan  # scans without any estimate of some run
+    a[0, ::7] = 1.0
+    return time, a, a * 1.2
+
+
+def test_intervals_are_those_of_drawing_runs_with_replacement(errors):
+    """The same draws give the same numbers as computing the statistic on the drawn runs."""
+    time, a, b = errors
+    found = [
+        thesis.usable_interval(a, time, time, rng=np.random.default_rng(4)),
+        thesis.usable_ratio(b, a, time, time, rng=np.random.default_rng(4)),
+        thesis.rmse_interval(a, time, 20, rng=np.random.default_rng(4)),
+        thesis.rmse_ratio(b, a, time, 20, rng=np.random.default_rng(4)),
+    ]
+
+    def reach(e):
+        return min(thesis.usable_range(e, time, time), time[-1])
+
+    def rms(e):
+        return thesis.rmse(e, time, 20)
+
+    expected = [
+        thesis.over_runs(reach, a, rng=np.random.default_rng(4)),
+        thesis.over_runs(lambda a, b: reach(b) / reach(a), a, b, rng=np.random.default_rng(4)),
+        thesis.over_runs(rms, a, rng=np.random.default_rng(4)),
+        thesis.over_runs(lambda a, b: rms(b) / rms(a), a, b, rng=np.random.default_rng(4)),
+    ]
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_allclose(
+            [one.value, one.low, one.high], [other.value, other.low, other.high], rtol=1e-9
+        )
+
+
+def test_the_range_of_each_run_is_that_of_the_run_alone(errors):
+    time, a, _ = errors
+    each = thesis.usable_range_of_each(a, time, time)
+    np.testing.assert_array_equal(each, [thesis.usable_range(e[None], time, time) for e in a])

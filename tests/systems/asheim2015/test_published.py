@@ -1,5 +1,7 @@
 """The settings are those of the thesis's text, of its code, or ours, and which is said."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -56,3 +58,43 @@ def test_the_printed_numbers_agree_where_they_stand_twice():
     f = s["filter"]
     assert f["text"]["Q_diagonal"] == [f["text"]["range_variance"], f["text"]["velocity_variance"]]
     assert q["noise"]["snr_useless"] == s["error_area"]["snr"]
+
+
+def test_every_slip_says_what_we_do_about_it_and_which_chapter_treats_it():
+    slips = thesis.audit()
+    assert len(slips) == len({slip["found"] for slip in slips}) == 30
+    labels = {
+        label: path.stem
+        for path in (thesis.published.DATA.parents[1] / "book").glob("asheim*.ipynb")
+        for label in re.findall(r"\((sec-[\w-]+)\)=", path.read_text(encoding="utf-8"))
+    }
+    for slip in slips:
+        assert set(slip) == {"place", "told", "found", "choice", "page"} and all(slip.values())
+        assert slip["page"] in labels, slip
+        assert "|" not in "".join(slip.values())  # they become cells of a table
+
+
+def test_the_constants_that_are_printed_twice_contradict_each_other():
+    n, q = thesis.scenario()["noise"], thesis.quoted()["noise"]
+    assert n["speed_of_light"] / n["frequency"] == pytest.approx(3 / 70)
+    assert q["wavelength_printed"] / (3 / 70) == pytest.approx(1.15, abs=0.01)
+    resolutions = [q[f"wavelength_{name}"] / (2 * n["integration"]) for name in ("code", "printed")]
+    told = q["velocity_resolution_printed"]
+    assert [abs(one - told) < 5e-5 for one in resolutions] == [True, False]
+    assert thesis.resolutions()[0] == pytest.approx(n["speed_of_light"] * 1e-9 / 2)
+    assert q["pulse_exponent_printed"] == 9  # and not -9
+
+
+def test_the_law_has_less_than_the_text_says_at_one_meter_and_at_the_error_area():
+    """By hand: 52 - 12 = 40 dB, and 52 - 12 sqrt(16.25) = 3.6 dB."""
+    q, area = thesis.quoted()["noise"], thesis.scenario()["error_area"]
+    assert thesis.snr(1.0) == pytest.approx(40.0) and q["snr_at_one_printed"] == 42.0
+    d = np.hypot(*(np.array(area["position"]) - thesis.radars()).T)
+    np.testing.assert_allclose(thesis.snr(d), 3.63, atol=0.005)
+    assert area["snr"] == 10.0
+
+
+def test_four_meters_on_both_axes_are_the_useful_range_and_the_real_one_has_two_values():
+    q = thesis.quoted()["range"]
+    assert np.hypot(q["axis"], q["axis"]) == pytest.approx(q["fused"], abs=0.005)
+    assert q["real_abstract"] != q["real_conclusion"]

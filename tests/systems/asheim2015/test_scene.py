@@ -94,3 +94,22 @@ def test_the_same_number_for_both_axes_makes_a_line():
     np.testing.assert_allclose(*(noisy - p).T)
     p, noisy = thesis.noisy_positions(thesis.straight_track, rng=np.random.default_rng(7))
     assert abs(np.corrcoef((noisy - p).T / thesis.deviations(np.hypot(*p.T))[:, 0])[0, 1]) < 0.3
+
+
+def test_the_tracks_end_where_the_thesis_says_up_to_sign_and_order():
+    q, s = thesis.quoted()["track"], thesis.scenario()["tracks"]
+    straight, turned = (
+        track([s["duration"]])[0, :2] for track in (thesis.straight_track, thesis.maneuver_track)
+    )
+    np.testing.assert_allclose(straight, q["straight_end"])
+    assert np.hypot(*straight) == pytest.approx(q["straight_end_distance"], abs=0.005)
+    assert np.abs(turned - q["maneuver_end"]).max() > 6
+    np.testing.assert_allclose(np.abs(turned[::-1]), q["maneuver_end"], atol=0.11)
+    # The printed distance is that of the printed place.
+    assert np.hypot(*q["maneuver_end"]) == pytest.approx(q["maneuver_end_distance"], abs=0.005)
+    assert abs(np.hypot(*turned) - q["maneuver_end_distance"]) > 0.03
+
+
+def test_the_person_creeps():
+    v = np.hypot(*thesis.scenario()["tracks"]["velocity"])
+    assert v < thesis.quoted()["track"]["speed_limit"]

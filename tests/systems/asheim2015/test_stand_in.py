@@ -76,3 +76,32 @@ def test_association_by_probability_follows_the_target(walk):
     assert np.median(error) < own["body"]
     gone = missed[..., int(REAL["gone"]) + 2 : int(REAL["back"]) - 1]
     assert np.median(gone) > 0.9
+
+
+def test_a_box_of_fixed_size_seldom_finds_the_track_again(walk):
+    """0.06 and 0.24 of 200 walks: of 50 not half, by chance 1e-4."""
+    code = thesis.settings("code", REAL["T"])
+    x = thesis.filter_radar(walk.detections, code, x0=walk.ranges[:, 0].mean(axis=0)).x
+    back = round(REAL["back"] / REAL["T"])
+    error = np.abs(x[:, 0, :, 0] - walk.ranges[0, :, 0])[:, back + 3 : back + 9]
+    assert (error < code.box[0]).all(axis=1).mean() < 0.5
+
+
+def test_the_errors_that_the_thesis_reads_off_lie_among_those_of_the_walks():
+    """Of 100 walks each lies between the least and the largest; the four places of Fig 6.4(c)."""
+    w, q = thesis.walk(100, rng=np.random.default_rng(5)), thesis.quoted()["real"]
+    code = thesis.settings("code", REAL["T"])
+    track = thesis.filter_radar(w.detections, code, x0=w.ranges[:, 0].mean(axis=0))
+    off, raw = (
+        thesis.distance_error(thesis.triangulate(d[:, 0], d[:, 1], REAL["baseline"])[0], w.truth)
+        for d in (track.x[..., 0], track.chosen[..., 0])
+    )
+    before, y = w.time < REAL["gone"], w.truth[:, 1]
+    two_to_three = before & (y >= 2) & (y <= 3)
+    for values, told in (
+        (off[:, before & (y < 2.4)].mean(axis=1), q["error_near"]),
+        (np.nanmean(raw[:, two_to_three], axis=1), np.mean(q["raw_near"])),
+        (np.nanmax(raw[:, before], axis=1), q["raw_worst"]),
+        (off[:, before & (np.abs(y - 4) < 0.2)].mean(axis=1), q["error_at_four"]),
+    ):
+        assert values.min() < told < values.max()

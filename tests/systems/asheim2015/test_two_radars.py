@@ -8,7 +8,7 @@ from dopplerlib.estimation.track import Track
 from dopplerlib.evaluation.range_bounds import range_crlb
 from dopplerlib.model.range_rate import range_rate_jacobian
 from dopplerlib.systems import asheim2015 as thesis
-from dopplerlib.systems.asheim2015.two_radars import polar, polar_jacobian
+from dopplerlib.systems.asheim2015.in_the_plane import polar, polar_jacobian
 
 
 @pytest.fixture(scope="module")

@@ -198,6 +198,45 @@ def test_linear_interpolation_costs_something_between_the_corners_and_nothing_at
     cost = system.linear_cost((10.0, 80.0), (10.0, 40.0))
     np.testing.assert_allclose(cost[[0, 0, -1, -1], [0, -1, 0, -1]], 1.0, rtol=1e-12)
     assert cost.max() > 1.1
+    finer = system.linear_cost((10.0, 20.0, 40.0, 80.0), (10.0, 20.0, 30.0, 40.0), points=43)
+    np.testing.assert_allclose(finer[::42, ::14], 1.0, rtol=1e-12)
+    assert finer.max() < 1.01
+
+
+def test_the_best_window_is_a_plane_in_logarithms_and_not_otherwise():
+    """No plane is near to a law that falls by a factor of nine over the region."""
+    a, snr_db = np.linspace(10.0, 88.2, 40), np.linspace(10.0, 40.0, 40)
+    best = system.best_window(a[:, None], snr_db)
+    error = system.plane_error((10.0, 88.2), (10.0, 40.0))
+    assert np.abs(error).max() > 0.5
+    # Least squares: what is left over is orthogonal to what the plane is made of.
+    rest = error * best
+    for part in (np.ones_like(best), best * 0 + a[:, None], best * 0 + snr_db):
+        assert abs(np.sum(rest * part)) < 1e-9 * np.sum(best * part)
+    logs = np.log(best)
+    np.testing.assert_allclose(np.diff(logs, 2, axis=1), 0, atol=1e-12)
+    slopes = np.diff(logs, axis=0) / np.diff(np.log(a))[:, None]
+    np.testing.assert_allclose(slopes, -2 / 5, rtol=1e-9)
+
+
+def test_long_windows_are_late_and_short_ones_noisy():
+    """10 records each; the errors differ by factors."""
+    windows = [8, 12, 48, 96]
+    table = system.window_table(
+        [5.0, 40.0], [0.0, 20.0], rng=np.random.default_rng(12), runs=10, windows=windows
+    )
+    late, noisy = table.cee[1, 1], table.cee[0, 0]
+    assert late[3] > 4 * late[1]
+    # Half of a window of 96 samples at 40 m/s^2 costs 5.7 of some 230 m/s.
+    assert late[3] == pytest.approx(40 * 95 / 2 * T / 226, rel=0.1)
+    assert noisy[0] > 4 * noisy[2]
+
+
+def test_the_limits_of_the_fighter_are_its_multiples_of_g_but_for_a_sign():
+    said, fighter = system.stated(), system.velocity_path("fighter")
+    assert fighter.a.min() == pytest.approx(-said.g_positive_si, rel=1e-3)
+    assert fighter.a.max() == pytest.approx(said.g_negative_si, rel=1e-3)
+    assert said.g_negative < 0 < said.g_negative_si
 
 
 def test_a_right_filter_reveals_the_noise_by_its_residuals_only_with_the_other_sign():
@@ -257,6 +296,34 @@ def test_summaries_hold_the_errors_of_each_run(runs):
         np.testing.assert_allclose(errors[name]["maneuver (m/s)"], expected, rtol=1e-6)
 
 
+def test_a_gain_is_that_of_the_same_run_and_knowing_the_delay_gains_most_in_a_maneuver(runs):
+    rows = system.gains(runs.doppler, 15.0, runs.path)
+    start = rows["one sensor, fixed window"]
+    np.testing.assert_allclose(start["maneuver (m/s)"], runs.rmse(1, "maneuver"), rtol=1e-6)
+    np.testing.assert_allclose(start["gain, maneuver"], 1.0)
+    delay, fused = rows["delay in H"], rows["measurement fusion"]
+    np.testing.assert_allclose(delay["maneuver (m/s)"], runs.rmse(6, "maneuver"), rtol=1e-6)
+    np.testing.assert_allclose(
+        delay["gain, maneuver"], start["maneuver (m/s)"] / delay["maneuver (m/s)"]
+    )
+    assert (delay["gain, maneuver"] > 5).all() and (fused["gain, maneuver"] < 1.1).all()
+    # With every measurement all ways of fusing, with one a window the best one and none.
+    assert len(rows) == 2 * (5 + 2)
+
+
+def test_estimates_are_compared_with_the_truth_at_their_own_time(runs):
+    ways = system.fusions(runs.doppler, 15.0, delayed=True, hop=64)
+    track = system.filter_velocity(runs.doppler, 15.0, delayed=True, hop=64)
+    times = OWN.first + 64 * np.arange(track.x.shape[2])
+    one = ways["one sensor"]
+    np.testing.assert_array_equal(one.sample, times[times >= OWN.scored])
+    np.testing.assert_array_equal(one.x, track.x[:, 0, times >= OWN.scored])
+    part = runs.path.maneuver[one.sample]
+    error = (one.x[..., 0] - runs.path.v[one.sample])[:, part]
+    found = system.fusion_errors(ways, runs.path)["one sensor"]["maneuver (m/s)"]
+    np.testing.assert_allclose(found, np.sqrt(np.mean(error**2, axis=-1)))
+
+
 def test_two_sensors_together_measure_with_half_of_the_variance():
     _, doppler = system.supposed_world(50, 200, 15.0, rng=np.random.default_rng(10))
     merged, ratio = system.merged_doppler(doppler, 15.0)
@@ -275,5 +342,7 @@ def test_what_does_not_fit_is_refused(runs):
         system.cumulative_error([1.0, 0.0], [1.0, 1.0])
     with pytest.raises(ValueError, match="accelerations must rise"):
         system.window_table([1, 0], [0, 1], rng=np.random.default_rng(1))
+    with pytest.raises(ValueError, match="snrs_db must rise"):
+        system.linear_cost([1, 2], [1, 1])
     with pytest.raises(ValueError, match="name must be one of"):
         system.velocity_path("path 3")

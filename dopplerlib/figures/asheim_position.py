@@ -1,0 +1,156 @@
+"""Figures of both radars: the area where circles meet, positions, and their errors."""
+
+import numpy as np
+
+from .style import BOUND, MEASURED, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, styled
+
+
+def error_areas(p, sensors, rings, areas, titles):
+    """Draw rings about both radars and the area that they share (Fig 5.5).
+
+    Parameters
+    ----------
+    p : ndarray, shape (2,)
+        True position in m.
+    sensors : ndarray, shape (2, 2)
+        Positions of the radars in m.
+    rings : sequence of ndarray, shape (2,)
+        For each pair of panels, half-widths of the rings of both radars in m.
+    areas : sequence of ndarray, shape (M, 2)
+        Outline of the area for each.
+    titles : sequence of str
+        Of the panels: the first rings in whole, then each in detail.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    angle = np.linspace(0, np.pi, 2000)
+    unit = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    with styled(7.0, 3.1) as figure:
+        axes = figure.subplots(1, 1 + len(rings), width_ratios=[1.7] + [1] * len(rings))
+        for ax, (half, corners), title in zip(
+            axes, [(rings[0], areas[0]), *zip(rings, areas, strict=True)], titles, strict=True
+        ):
+            for n, (color, ls) in enumerate(((OURS, "-"), (ORANGE, "--"))):
+                d = np.hypot(*(p - sensors[n]))
+                for sign in (-1, 1):
+                    ax.plot(
+                        *(sensors[n] + (d + sign * half[n]) * unit).T, color=color, ls=ls, lw=1.2
+                    )
+            ax.fill(*corners.T, color=SENSOR, alpha=0.35, lw=0)
+            ax.plot(*p, "*", color=TRUTH, ms=9)
+            ax.set(title=title, xlabel="x in m")
+        axes[0].plot(*sensors.T, "o", color=SENSOR)
+        axes[0].set(ylabel="y in m", xlim=(-5, 5), ylim=(0, 5.4), aspect="equal")
+        reach = 1.25 * np.abs(areas[-1] - p).max(axis=0)
+        for ax in axes[1:]:
+            ax.set(
+                xlim=p[0] + reach[0] * np.array([-1, 1]), ylim=p[1] + reach[1] * np.array([-1, 1])
+            )
+        return figure
+
+
+def plane(truth, sets, sensors, limits, titles=None):
+    """Draw positions in the plane, one panel for each set of labeled positions.
+
+    Parameters
+    ----------
+    truth : ndarray, shape (K, 2)
+        True positions in m.
+    sets : sequence of dict of str to ndarray, shape (K, 2)
+        For each panel, positions by label; the last label of a panel is the estimate.
+    sensors : ndarray, shape (2, 2)
+        Positions of the radars in m.
+    limits : tuple of two tuple of float
+        Limits of x and of y.
+    titles : sequence of str, optional
+        Of the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.6) as figure:
+        axes = figure.subplots(1, len(sets), squeeze=False, sharey=True)[0]
+        for i, (ax, positions) in enumerate(zip(axes, sets, strict=True)):
+            labels = list(positions)
+            for label in labels[:-1]:
+                ax.plot(*positions[label].T, ".", color=MEASURED, ms=3, label=label)
+            ax.plot(*positions[labels[-1]].T, color=OURS, label=labels[-1])
+            ax.plot(*truth.T, color=TRUTH, ls="--", label="true")
+            ax.plot(*sensors.T, "o", color=SENSOR)
+            ax.set(xlabel="x in m", xlim=limits[0], ylim=limits[1])
+            if titles:
+                ax.set_title(titles[i])
+            ax.legend(loc="upper left")
+        axes[0].set_ylabel("y in m")
+        return figure
+
+
+def triangulated(time, truth, raw, estimate, sensors, limits):
+    """Draw x and y over time and both in the plane (Fig 5.10).
+
+    Parameters
+    ----------
+    time : ndarray, shape (K,)
+        Time in s.
+    truth, raw, estimate : ndarray, shape (K, 2)
+        Positions in m.
+    sensors : ndarray, shape (2, 2)
+        Positions of the radars in m.
+    limits : tuple of two tuple of float
+        Limits of x and of y.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.0) as figure:
+        axes = figure.subplots(1, 3)
+        for i, name in enumerate("xy"):
+            axes[i].plot(time, raw[:, i], color=MEASURED, lw=0.7, label="measured, inside the gate")
+            axes[i].plot(time, truth[:, i], color=TRUTH, ls="--", label="true")
+            axes[i].plot(time, estimate[:, i], color=OURS, label="filtered")
+            axes[i].set(xlabel="time in s", ylabel=f"{name} in m", ylim=limits[i])
+        axes[2].plot(*raw.T, ".", color=MEASURED, ms=3)
+        axes[2].plot(*truth.T, color=TRUTH, ls="--")
+        axes[2].plot(*estimate.T, color=OURS)
+        axes[2].plot(*sensors.T, "o", color=SENSOR)
+        axes[2].set(xlabel="x in m", ylabel="y in m", xlim=limits[0], ylim=limits[1])
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+        return figure
+
+
+def error_over_distance(distance, errors, limit=1.0, published=None):
+    """Draw the root mean square error of many runs over the distance from the origin.
+
+    Parameters
+    ----------
+    distance : ndarray, shape (K,)
+        True distance in m.
+    errors : dict of str to ndarray, shape (runs, K)
+        Position errors in m by label; NaN where there is no estimate.
+    limit : float
+        Error above which a position is called useless.
+    published : float, optional
+        Distance up to which the thesis calls its estimates useful.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.6) as figure:
+        ax = figure.subplots()
+        styles = [(MEASURED, "-"), (OURS, "-"), (ORANGE, "--"), (SENSOR, "-."), (PINK, ":"),
+                  (TRUTH, (0, (6, 2)))]  # fmt: skip
+        for (label, error), (color, ls) in zip(errors.items(), styles, strict=False):
+            rms = np.sqrt(np.nanmean(np.square(error), axis=0))
+            ax.plot(distance, rms, color=color, ls=ls, label=label)
+        ax.axhline(limit, color=BOUND, lw=1.0)
+        if published is not None:
+            ax.axvline(published, color=PUBLISHED, ls=":", label="useful to here, says the thesis")
+        ax.set(xlabel="distance from the origin in m", ylabel="RMS position error in m")
+        ax.set(yscale="log", ylim=(1e-3, 100))
+        ax.legend(loc="upper left", fontsize=9)
+        return figure

@@ -1,0 +1,169 @@
+"""Filters whose state is the person's position and velocity in the plane."""
+
+import numpy as np
+
+from ... import _checks
+from ...estimation.extended_update import ekf_update
+from ...estimation.linear_kalman import _predict, _update
+from ...model.kinematics import ncv_transition, wna_process_noise
+from ...model.range_rate import range_rate, range_rate_jacobian
+from ...tracking.bilateration import bilaterate
+from ...tracking.gates import chi2_gate, fixed_box_gate
+from .published import scenario
+from .two_radars import PositionTrack, triangulate
+
+
+def central_filter(records, settings, *, q=None, start=None):
+    """Track the person with one extended Kalman filter in the plane, fed by both radars.
+
+    Parameters
+    ----------
+    records : Records
+        What both radars measured. Each detection updates the state at its own time.
+    settings : Settings
+        "modern" settings: their R, gate and P0 are used.
+    q : float, optional
+        Spectral density of the acceleration along x and y in m^2/s^3; that of the settings if None.
+    start : array_like, shape (..., 4), optional
+        State at the first scan; if None, the position that the first scan gives, in front of the
+        radars by at least the `start_y` of the scenario, at rest.
+
+    Returns
+    -------
+    PositionTrack
+        States after both radars' updates, at the time of the second one.
+
+    Notes
+    -----
+    The gate looks at each radar by itself, at range and range rate together.
+    """
+    c = scenario()["cartesian"]
+    q = settings.Q[1, 1] / settings.T if q is None else _checks.positive_number("q", q)
+    z, runs = records.z, len(records.z)
+    if start is None:
+        p, _ = triangulate(z[:, 0, 0, 0], z[:, 1, 0, 0], records.baseline)
+        start = np.zeros((runs, 4))
+        start[:, 0], start[:, 1] = p[:, 0], np.maximum(p[:, 1], c["start_y"])
+    x = np.broadcast_to(_checks.finite("start", start, (4,)), (runs, 4))
+    P = np.broadcast_to(c["start_covariance"] * np.eye(4), (runs, 4, 4))
+    # Radar 2 lags radar 1 by the offset, and radar 1 radar 2 by what is left of the interval.
+    motion = [_motion(dt, q) for dt in (settings.T - records.offset, records.offset)]
+    steps = []
+    for k in range(z.shape[2]):
+        used, values = [np.ones(runs, bool)] * 2, [np.full(runs, np.nan)] * 2
+        for n in range(2):
+            if k or n:
+                x, P = _predict(x, P, *motion[n])
+            if k:
+                x, P, used[n], values[n] = _step(x, P, z[:, n, k], records.sensors[n], settings)
+        steps.append((x, P, np.stack(used, axis=-1), np.stack(values, axis=-1)))
+    x, P, used, values = (np.stack(part, axis=1) for part in zip(*steps, strict=True))
+    swap = np.swapaxes(used, 1, 2)
+    return PositionTrack(x[..., :2], np.ones(x.shape[:2], bool), swap, x, P, values.swapaxes(1, 2))
+
+
+def table_3_2(records, *, Q=None, start=None):
+    """Run the extended Kalman filter of Table 3.2 on triangulated ranges and angles (Fig 3.5).
+
+    Parameters
+    ----------
+    records : Records
+        What both radars measured.
+    Q : array_like, shape (4, 4), optional
+        Covariance of the process noise; that of the scenario if None.
+    start : array_like, shape (..., 4), optional
+        State at the first scan; the first triangulated position at rest if None.
+
+    Returns
+    -------
+    PositionTrack
+        Where the circles do not meet, the scan is left out.
+
+    Notes
+    -----
+    The measurement is [d, alpha] from the origin, with independent noise of fixed size. That is
+    not what triangulated ranges have: see `range_crlb`. The innovation is z - h(x) as in Eq 3.18,
+    not z - H x as in the table, and the angle is that of both coordinates, not of their quotient.
+    """
+    c = scenario()["cartesian"]
+    Q = np.diag(c["Q_diagonal"]) if Q is None else Q
+    R = np.diag([c["sigma_range"], c["sigma_angle"]]) ** 2
+    x_tri, y_tri, valid = bilaterate(records.z[:, 0, :, 0], records.z[:, 1, :, 0], records.baseline)
+    measured = np.stack([np.hypot(x_tri, y_tri), np.arctan2(y_tri, x_tri)], axis=-1)
+    if start is None:
+        y0 = np.maximum(np.where(valid[:, 0], y_tri[:, 0], 0.0), c["start_y"])
+        start = np.stack([x_tri[:, 0], y0, 0 * y0, 0 * y0], axis=-1)
+    x = np.broadcast_to(_checks.finite("start", start, (4,)), (len(measured), 4))
+    P = np.broadcast_to(c["start_covariance"] * np.eye(4), (len(x), 4, 4))
+    F = ncv_transition(records.time[1] - records.time[0], dim=2, order="derivative")
+    steps = [(x, P)]
+    for k in range(1, measured.shape[1]):
+        x, P = _predict(x, P, F, Q)
+        x, P, _, _ = ekf_update(x, P, measured[:, k], polar, polar_jacobian, R, wrap=(1,))
+        steps.append((x, P))
+    x, P = (np.stack(part, axis=1) for part in zip(*steps, strict=True))
+    return PositionTrack(x[..., :2], valid, np.stack([valid, valid], axis=1), x, P)
+
+
+def polar(x):
+    """Return distance from the origin and angle of states in the plane.
+
+    Parameters
+    ----------
+    x : ndarray, shape (..., 4)
+        States [x, y, v_x, v_y].
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In m and rad.
+    """
+    return np.stack([np.hypot(x[..., 0], x[..., 1]), np.arctan2(x[..., 1], x[..., 0])], axis=-1)
+
+
+def polar_jacobian(x):
+    """Return the derivative of `polar`, Eq 3.19.
+
+    Parameters
+    ----------
+    x : ndarray, shape (..., 4)
+        States.
+
+    Returns
+    -------
+    ndarray, shape (..., 2, 4)
+    """
+    d = np.hypot(x[..., 0], x[..., 1])
+    H = np.zeros((*d.shape, 2, 4))
+    H[..., 0, 0], H[..., 0, 1] = x[..., 0] / d, x[..., 1] / d
+    H[..., 1, 0], H[..., 1, 1] = -x[..., 1] / d**2, x[..., 0] / d**2
+    return H
+
+
+def _motion(dt, q):
+    if not dt:
+        return np.eye(4), np.zeros((4, 4))
+    return (
+        ncv_transition(dt, dim=2, order="derivative"),
+        wna_process_noise(dt, q, dim=2, order="derivative"),
+    )
+
+
+def _step(x, P, z, sensor, settings):
+    """Update with one radar's detection where the gate lets it through."""
+    predicted = range_rate(x, sensor[None])[:, 0]
+    H = range_rate_jacobian(x, sensor[None])[:, 0]
+    R = settings.R(predicted[:, 0])[..., None] * np.eye(2)
+    nu = z - predicted
+    S = H @ P @ np.swapaxes(H, -1, -2) + R
+    nis = np.sum(nu * np.linalg.solve(S, nu[..., None])[..., 0], axis=-1)
+    if settings.gate == "box":
+        accept = fixed_box_gate(nu, settings.box)
+    elif settings.gate == "nis":
+        accept = chi2_gate(nis, 2, settings.gate_probability)
+    else:
+        accept = np.isfinite(nis)
+    linear = (H @ x[..., None])[..., 0]
+    xu, Pu, _, _ = _update(x, P, nu + linear, H, R)
+    x = np.where(accept[:, None], xu, x)
+    return x, np.where(accept[:, None, None], Pu, P), accept, nis

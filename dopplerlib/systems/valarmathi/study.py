@@ -1,0 +1,230 @@
+"""All algorithms on all paths at all signal-to-noise ratios: a saved study, and each cell again."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _checks
+from ...evaluation.intervals import Estimate, share_interval
+from .algorithms import ALGORITHMS, run_algorithms
+from .published import DATA, PATHS, chosen, stated
+from .windows import window_table
+
+SEED = 3
+RUNS = 100
+SNRS_DB = np.arange(-10.0, 41.0, 5.0)
+MEASURES = ("whole", "maneuver", "constant", "cee", "delay")
+CLIFF_RUNS = 200
+CLIFF_SNRS_DB = np.arange(-8.0, -1.0)
+
+
+@dataclass(frozen=True)
+class Study:
+    """Errors of every run of all algorithms on all paths at all signal-to-noise ratios.
+
+    Attributes
+    ----------
+    paths : tuple of str
+        Names of the paths.
+    snrs_db : ndarray, shape (S,)
+        Signal-to-noise ratios of a sample in dB.
+    measures : dict of str to ndarray, shape (paths, S, 6, runs)
+        Of each run, root mean square errors in m/s of the "whole" record, of the "maneuver" and
+        at "constant" velocity; the document's "cee" at the end in percent; and the "delay" in ms.
+    """
+
+    paths: tuple
+    snrs_db: np.ndarray
+    measures: dict
+
+    @property
+    def runs(self):
+        """Number of runs of each algorithm in each cell."""
+        return self.measures["whole"].shape[-1]
+
+    def of(self, measure, path, algorithm):
+        """Return one measure of one algorithm on one path, shape (S, runs)."""
+        _checks.one_of("measure", measure, tuple(self.measures))
+        _checks.one_of("algorithm", algorithm, tuple(ALGORITHMS))
+        place = self.paths.index(_checks.one_of("path", path, self.paths))
+        return self.measures[measure][place, :, algorithm - 1]
+
+    def summary(self, path, snr_db):
+        """Return what `AlgorithmRuns.summary` would, of one cell."""
+        levels = self.snrs_db.tolist()
+        j = levels.index(_checks.one_of("snr_db", float(snr_db), levels))
+        half = (chosen().fixed_window - 1) / 2 * stated().T
+        columns = {
+            "maneuver (m/s)": ("maneuver", 1.0),
+            "constant velocity (m/s)": ("constant", 1.0),
+            "whole record (m/s)": ("whole", 1.0),
+            "delay (half windows)": ("delay", 1e3 * half),
+        }
+        return {
+            name: {
+                title: self.of(measure, path, number)[j] / unit
+                for title, (measure, unit) in columns.items()
+            }
+            for number, name in ALGORITHMS.items()
+        }
+
+    def cells(self):
+        """Return what `cell_measures` would, by path and signal-to-noise ratio."""
+        return {
+            (path, float(snr_db)): {
+                (algorithm, measure): self.of(measure, path, algorithm)[j]
+                for algorithm in ALGORITHMS
+                for measure in self.measures
+            }
+            for path in self.paths
+            for j, snr_db in enumerate(self.snrs_db)
+        }
+
+
+def study_table(seed=SEED):
+    """Return the table of windows that the study was made with.
+
+    Parameters
+    ----------
+    seed : int
+        That of the study.
+
+    Returns
+    -------
+    WindowTable
+    """
+    return window_table(rng=np.random.default_rng(seed))
+
+
+def study_cell(path, snr_db, table, runs=RUNS, seed=SEED):
+    """Simulate one cell of the study.
+
+    Parameters
+    ----------
+    path : {"path 1", "path 2", "fighter"}
+        See `velocity_path`.
+    snr_db : float
+        Signal-to-noise ratio of a sample in dB, not below -100.
+    table : WindowTable
+        For the choice of windows.
+    runs : int
+        Number of runs. The first are the same however many follow.
+    seed : int
+        Of the study; together with path and ratio it fixes the random numbers.
+
+    Returns
+    -------
+    AlgorithmRuns
+
+    Raises
+    ------
+    ValueError
+        If `path` is unknown or another argument is refused by what it is for.
+    """
+    number = PATHS.index(_checks.one_of("path", path, PATHS))
+    rng = np.random.default_rng([seed, number, round(10 * (snr_db + 100))])
+    return run_algorithms(path, snr_db, runs, table, rng=rng)
+
+
+def cell_measures(result):
+    """Return the measures of every run.
+
+    Parameters
+    ----------
+    result : AlgorithmRuns
+        Runs of all algorithms. Of algorithms with one sensor the first one counts.
+
+    Returns
+    -------
+    dict of (int, str) to ndarray, shape (runs,)
+        By algorithm and measure; see `Study`.
+    """
+    return {
+        (algorithm, measure): values
+        for algorithm in ALGORITHMS
+        for measure, values in {
+            "whole": result.rmse(algorithm),
+            "maneuver": result.rmse(algorithm, "maneuver"),
+            "constant": result.rmse(algorithm, "constant"),
+            "cee": 100 * result.cee(algorithm)[:, -1],
+            "delay": 1e3 * result.delay(algorithm),
+        }.items()
+    }
+
+
+def saved_study():
+    """Read the study as ``make valarmathi-study`` wrote it.
+
+    Returns
+    -------
+    Study
+    """
+    rows = np.loadtxt(DATA / "study.csv", delimiter=",", skiprows=1)
+    snrs_db = np.unique(rows[:, 1])
+    rows = rows.reshape(len(PATHS), len(snrs_db), len(ALGORITHMS), -1, rows.shape[1])
+    return Study(PATHS, snrs_db, {name: rows[..., 3 + i] for i, name in enumerate(MEASURES)})
+
+
+def failed_shares():
+    """Read which share of the runs fails where the errors begin to rise.
+
+    Returns
+    -------
+    dict of (str, int) to tuple of (ndarray, tuple of Estimate)
+        By path and algorithm: signal-to-noise ratios in dB, and at each the share of runs whose
+        error of the whole record is more than `failed_rmse` of `chosen`, with its interval.
+    """
+    rows = np.loadtxt(DATA / "cliff.csv", delimiter=",", skiprows=1)
+    shares = {}
+    for number, path in enumerate(PATHS, start=1):
+        for algorithm in ALGORITHMS:
+            part = rows[(rows[:, 0] == number) & (rows[:, 2] == algorithm)]
+            shares[path, algorithm] = (
+                part[:, 1],
+                tuple(share_interval(np.arange(runs) < failed) for runs, failed in part[:, 3:]),
+            )
+    return shares
+
+
+def failure_limit(snrs_db, shares, limit=None):
+    """Return the signal-to-noise ratio above which an algorithm does not fail.
+
+    Parameters
+    ----------
+    snrs_db : array_like, shape (S,)
+        Signal-to-noise ratios in dB, rising.
+    shares : sequence of Estimate, length S
+        Share of failed runs at each.
+    limit : float, optional
+        Share from which an algorithm has failed; `failed_share` of `chosen` if None.
+
+    Returns
+    -------
+    Estimate
+        Where the share falls to the limit for the last time, in dB, by linear interpolation; and
+        where the ends of its interval do.
+
+    Raises
+    ------
+    ValueError
+        If the share or an end of its interval does not pass the limit between the ratios.
+
+    Examples
+    --------
+    >>> from dopplerlib.evaluation.intervals import Estimate
+    >>> shares = [Estimate(1, 1, 1), Estimate(0.1, 0.1, 0.1), Estimate(0.0, 0.0, 0.0)]
+    >>> failure_limit([0, 1, 2], shares, 0.05).value
+    1.5
+    """
+    snrs_db = _checks.finite("snrs_db", snrs_db, (None,))
+    limit = chosen().failed_share if limit is None else _checks.probability("limit", limit)
+    ends = []
+    for end in ("value", "low", "high"):
+        share = np.array([getattr(one, end) for one in shares])
+        above = np.flatnonzero(share > limit)
+        if not len(above) or above[-1] == len(share) - 1:
+            raise ValueError(f"shares must pass {limit} between the ratios, got {share.tolist()}")
+        k = above[-1]
+        part = (share[k] - limit) / (share[k] - share[k + 1])
+        ends.append(float(snrs_db[k] + part * (snrs_db[k + 1] - snrs_db[k])))
+    return Estimate(*ends)
