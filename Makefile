@@ -74,6 +74,10 @@ figure4: $(VENV)/.ready  ## run the study of Fig 4 in full: some twenty seconds
 figure4-readings: $(VENV)/.ready  ## score every reading of Fig 4: some minutes
 	$(PY) -m tools.figure4 readings
 
+.PHONY: macaveiu-study
+macaveiu-study: $(VENV)/.ready  ## run the scheme of Macaveiu et al. on many records: ten minutes or so
+	$(PY) -m tools.macaveiu
+
 .PHONY: valarmathi-study
 valarmathi-study: $(VENV)/.ready  ## run all algorithms at all noise levels of Valarmathi: minutes
 	$(PY) -m tools.valarmathi
