@@ -21,7 +21,8 @@ def central_filter(records, settings, *, q=None, start=None):
     records : Records
         What both radars measured. Each detection updates the state at its own time.
     settings : Settings
-        "modern" settings: their R, gate and P0 are used.
+        "modern" settings: their interval, R and gate are used. The covariance of the start is
+        that of the table `cartesian` of the scenario.
     q : float, optional
         Spectral density of the acceleration along x and y in m^2/s^3; that of the settings if None.
     start : array_like, shape (..., 4), optional
@@ -33,6 +34,12 @@ def central_filter(records, settings, *, q=None, start=None):
     PositionTrack
         States after both radars' updates, at the time of the second one.
 
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described, or the second radar does not measure between
+        two scans of the first.
+
     Notes
     -----
     The gate looks at each radar by itself, at range and range rate together.
@@ -40,6 +47,11 @@ def central_filter(records, settings, *, q=None, start=None):
     c = scenario()["cartesian"]
     q = settings.Q[1, 1] / settings.T if q is None else _checks.positive_number("q", q)
     z, runs = records.z, len(records.z)
+    if not 0 <= records.offset <= settings.T:
+        raise ValueError(
+            f"the offset of the records must lie between 0 and the interval of {settings.T} s, "
+            f"got {records.offset}"
+        )
     if start is None:
         p, _ = triangulate(z[:, 0, 0, 0], z[:, 1, 0, 0], records.baseline)
         start = np.zeros((runs, 4))
