@@ -102,29 +102,24 @@ def one_radar(records, tracks, rng):
         K, middle = min(a.shape[-1], b.shape[-1]), (low + high) / 2
         return rmse_ratio(a[:, :K], b[:, :K], t[:K], middle, middle - low, rng=rng)
 
+    def windows(a, b, radar, *parts):
+        return Readings(
+            {f"{low} to {high} s": ratio(a, b, low, high, radar) for low, high in parts}
+        )
+
     times = departure(tracks["code"].updated, t)
     plain = ("code", "text")
     return {
         "kf-improves": Readings(
             {name: ratio(f"{name}, no rate", "measured", 20, 30, 0) for name in plain}
         ),
-        "doppler-R1": ratio("code", "code, no rate", 5, 40, 0),
-        "doppler-R2": Readings(
-            {
-                f"{low} to {high} s": ratio("code", "code, no rate", low, high, 1)
-                for low, high in ((4, 12), (15, 40))
-            }
-        ),
+        "doppler-R1": windows("code", "code, no rate", 0, (4, 12), (15, 40)),
+        "doppler-R2": windows("code", "code, no rate", 1, (4, 12), (15, 40)),
         "R1-departs": Draws(times[:, 0]),
         "R1-in-range": Draws(times[:, 0]),
         "R2-departs": Draws(times[:, 1]),
-        "good-snr-R1": ratio("code", "measured", 0, 10, 0),
-        "good-snr-R2": Readings(
-            {
-                f"{low} to {high} s": ratio("code", "measured", low, high, 1)
-                for low, high in ((0, 7), (10, 20))
-            }
-        ),
+        "good-snr-R1": windows("code", "measured", 0, (0, 7), (10, 20)),
+        "good-snr-R2": windows("code", "measured", 1, (0, 7), (10, 20)),
         "follows-R1": ratio("code, no gate", "code", 49, 50, 0),
         "follows-R2": ratio("code, no gate", "code", 49, 50, 1),
         "ekf-needed": _largest_step_difference(records.z[0, 0, :300], settings("code")),

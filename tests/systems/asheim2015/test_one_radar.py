@@ -100,9 +100,10 @@ def test_using_the_first_measurement_twice_moves_the_start(z):
 
 @pytest.mark.parametrize("gate", ["box", "nis", None])
 def test_the_nearest_is_that_of_least_nis(gate):
-    """By hand: S = F P0 F' + Q + R. Of three detections inside the gate one is nearest in range,
+    """By hand, with S = F P0 F' + Q + R.
 
-    one in velocity, and the third has the least NIS. The first of them is none of its choice.
+    Of three detections inside the gate the first is nearest in range and the second in velocity,
+    but the third has the least NIS.
     """
     own = thesis.settings("code", gate=gate)
     S = F @ own.P0 @ F.T + own.Q + np.diag(own.R(1.0))
@@ -133,6 +134,15 @@ def test_a_gate_on_nis_looks_at_the_rate_only_if_the_filter_uses_it():
     detections = np.array([[[2.0, 0.1]], [[2.01, 9.0]]])
     for doppler in (True, False):
         assert thesis.filter_radar(detections, own, doppler=doppler).updated[1] == (not doppler)
+
+
+def test_the_gate_on_ranges_alone_has_one_degree_of_freedom():
+    """A thousandth is beyond a squared normal number of 10.83, for two it would be 13.82."""
+    own = thesis.settings("modern")
+    S = (F @ own.P0 @ F.T + own.Q)[0, 0] + own.R(2.01)[0]
+    for nis, inside in ((10.7, True), (10.9, False)):
+        detections = np.array([[[2.0, 0.1]], [[2.01 + np.sqrt(nis * S), 0.1]]])
+        assert thesis.filter_radar(detections, own, doppler=False).updated[1] == inside
 
 
 def test_the_first_detection_of_the_first_scan_starts_the_track_wherever_it_stands():
