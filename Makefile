@@ -74,6 +74,10 @@ figure4: $(VENV)/.ready  ## run the study of Fig 4 in full: some twenty seconds
 figure4-readings: $(VENV)/.ready  ## score every reading of Fig 4: some minutes
 	$(PY) -m tools.figure4 readings
 
+.PHONY: macaveiu-study
+macaveiu-study: $(VENV)/.ready  ## run the scheme of Macaveiu et al. on many records: ten minutes or so
+	$(PY) -m tools.macaveiu
+
 .PHONY: valarmathi-study
 valarmathi-study: $(VENV)/.ready  ## run all algorithms at all noise levels of Valarmathi: minutes
 	$(PY) -m tools.valarmathi
@@ -82,6 +86,10 @@ valarmathi-study: $(VENV)/.ready  ## run all algorithms at all noise levels of V
 recording: $(VENV)/.ready  ## write the simulated recording of six sensors again
 	$(PY) -m tools.simulated_recording
 
+.PHONY: iq-race
+iq-race: $(VENV)/.ready  ## compare every frequency estimator with the bound: some minutes
+	$(PY) -m tools.iq_race
+
 .PHONY: seeds
 seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depend on the draw
 	$(PY) -m tools.seeds
@@ -89,6 +97,10 @@ seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depe
 .PHONY: bench
 bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement
 	$(BENCH)/bin/python benchmarks/ekf.py
+
+.PHONY: bench-iq
+bench-iq: $(VENV)/.ready  ## time from IQ to Doppler: a second of six sensors
+	$(PY) benchmarks/iq.py
 
 .PHONY: lock
 lock: $(UV)  ## renew environment.lock and benchmarks/requirements.lock

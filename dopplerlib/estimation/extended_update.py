@@ -77,7 +77,8 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     ------
     ValueError
         If shapes do not fit, a value is not finite (but for a NaN in `z`), `P` is not a covariance
-        (it may be singular), or `R` is not positive definite.
+        (it may be singular), `R` is not positive definite, or `wrap` names a component that the
+        measurement does not have.
 
     Notes
     -----
@@ -95,18 +96,18 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     ([[2.2], [2.0]], [[[0.2]], [[1.0]]])
     """
     x, P, z, R = _checked(x, P, z, R)
+    accept = np.asarray(True if accept is None else accept)
+    if accept.dtype != bool:
+        raise ValueError(f"accept must be made of booleans, got {accept.dtype}")
+    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 1), "R": (R, 2), "accept": (accept, 0)})
+    return _update(x, P, z, h, H, R, wrap, accept)
+
+
+def _update(x, P, z, h, H, R, wrap, accept=True):
     innovation, S, J = _innovation(x, P, z, h, H, R, wrap)
-    there = np.isfinite(innovation).all(axis=-1)
-    if accept is not None:
-        accept = np.asarray(accept)
-        if accept.dtype != bool:
-            raise ValueError(f"accept must be made of booleans, got {accept.dtype}")
-        there = there & accept
-    K = np.swapaxes(np.linalg.solve(S, J @ P), -1, -2)
-    A = np.eye(x.shape[-1]) - K @ J
-    correction = (K @ np.where(there[..., None], innovation, 0)[..., None])[..., 0]
-    updated = A @ P @ np.swapaxes(A, -1, -2) + K @ R @ np.swapaxes(K, -1, -2)
-    return x + correction, np.where(there[..., None, None], updated, P), innovation, S
+    there = np.isfinite(innovation).all(axis=-1) & accept
+    updated = _corrected(x, P, np.where(there[..., None], innovation, 0), S, J, R)
+    return updated[0], np.where(there[..., None, None], updated[1], P), innovation, S
 
 
 def _checked(x, P, z, R):
@@ -126,6 +127,15 @@ def _innovation(x, P, z, h, H, R, wrap):
     predicted = _checks.finite("h(x)", h(x), (m,))
     J = _checks.finite("H(x)", H(x), (m, x.shape[-1]))
     innovation = z - predicted
+    if not set(wrap) <= set(range(m)):
+        raise ValueError(f"wrap must hold components from 0 to {m - 1}, got {wrap}")
     for i in wrap:
         innovation[..., i] = (innovation[..., i] + np.pi) % (2 * np.pi) - np.pi
     return innovation, J @ P @ np.swapaxes(J, -1, -2) + R, J
+
+
+def _corrected(x, P, innovation, S, J, R):
+    K = np.swapaxes(np.linalg.solve(S, J @ P), -1, -2)
+    A = np.eye(x.shape[-1]) - K @ J
+    P = A @ P @ np.swapaxes(A, -1, -2) + K @ R @ np.swapaxes(K, -1, -2)
+    return x + (K @ innovation[..., None])[..., 0], P

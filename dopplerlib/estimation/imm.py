@@ -58,13 +58,13 @@ def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, a matrix is not a covariance, or probabilities
-        are negative or do not add to 1.
+        If shapes do not fit, there is no model or no sample, a value is not finite, a matrix is
+        not a covariance, or probabilities are negative or do not add to 1.
 
     Notes
     -----
     Blom and Bar-Shalom (1988); Bar-Shalom, Li, Kirubarajan (2001), Sec 11.6.6. With one model it is
-    `kf`.
+    `kf`. Inside, probabilities are logarithms: a model too improbable for a float may come back.
 
     Examples
     --------
@@ -79,8 +79,8 @@ def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     """
     F = _checks.finite("F", F, (None, None, None))
     M, n = F.shape[0], F.shape[-1]
-    if F.shape != (M, n, n):
-        raise ValueError(f"F must have shape (M, n, n), got {F.shape}")
+    if F.shape != (M, n, n) or not M:
+        raise ValueError(f"F must have shape (M, n, n) of at least one model, got {F.shape}")
     Q = _checks.covariance("Q", Q, n, definite=False)
     if Q.shape != (M, n, n):
         raise ValueError(f"Q must have shape {(M, n, n)} like F, got {Q.shape}")
@@ -90,27 +90,31 @@ def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     transition = _probabilities("transition", transition, (M, M))
     mode0 = _probabilities("mode0", np.full(M, 1 / M) if mode0 is None else mode0, (M,))
     z = _checks.finite("z", z, (None, m))
+    if not z.size:
+        raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
     batch = z.shape[:-2]
     x0 = _checks.each_run("x0", _checks.finite("x0", x0, (n,)), batch, (n,))
     P0 = _checks.each_run("P0", _checks.covariance("P0", P0, n), batch, (n, n))
 
     x = np.repeat(x0[..., None, :], M, axis=-2)
     P = np.repeat(P0[..., None, :, :], M, axis=-3)
-    mode = np.broadcast_to(mode0, (*batch, M))
+    with np.errstate(divide="ignore"):  # the logarithm of 0 is what it should be
+        log_mode, log_transition = np.log(np.broadcast_to(mode0, (*batch, M))), np.log(transition)
     steps = []
     for k in range(z.shape[-2]):
-        x, P, mode = _step(x, P, mode, z[..., k, :], F, Q, H, R, transition)
+        x, P, log_mode = _step(x, P, log_mode, z[..., k, :], F, Q, H, R, log_transition)
+        mode = _shares(log_mode, axis=-1)
         steps.append((*_moments(x, P, mode), mode))
     return ImmTrack(*(np.stack(s, axis=len(batch)) for s in zip(*steps, strict=True)))
 
 
-def _step(x, P, mode, z, F, Q, H, R, transition):
+def _step(x, P, log_mode, z, F, Q, H, R, log_transition):
     # Joint probability of the model before (axis -2) and the model now (axis -1).
-    joint = mode[..., :, None] * transition
-    now = joint.sum(axis=-2)
-    # A model that cannot be reached keeps the state it had, with probability zero.
-    weight = np.where(now[..., None, :] > 0, joint, np.eye(len(transition)))
-    weight = np.swapaxes(weight / weight.sum(axis=-2, keepdims=True), -1, -2)
+    joint = log_mode[..., :, None] + log_transition
+    now = np.logaddexp.reduce(joint, axis=-2)
+    # A model that cannot be reached has probability zero, but its state has to stay finite.
+    joint = np.where(now[..., None, :] > -np.inf, joint, log_mode[..., :, None])
+    weight = np.swapaxes(_shares(joint, axis=-2), -1, -2)
     x, P = _moments(x[..., None, :, :], P[..., None, :, :, :], weight)
 
     x = (F @ x[..., None])[..., 0]
@@ -118,8 +122,14 @@ def _step(x, P, mode, z, F, Q, H, R, transition):
     x, P, innovation, S = _update(x, P, z[..., None, :], H, R)
     nis = np.sum(innovation * np.linalg.solve(S, innovation[..., None])[..., 0], axis=-1)
     log_likelihood = -(nis + np.linalg.slogdet(S)[1]) / 2
-    mode = now * np.exp(log_likelihood - log_likelihood.max(axis=-1, keepdims=True))
-    return x, P, mode / mode.sum(axis=-1, keepdims=True)
+    log_mode = now + log_likelihood
+    return x, P, log_mode - log_mode.max(axis=-1, keepdims=True)
+
+
+def _shares(log_weight, axis):
+    """Return weights that add to 1 along the axis; at least one of their logarithms is finite."""
+    weight = np.exp(log_weight - log_weight.max(axis=axis, keepdims=True))
+    return weight / weight.sum(axis=axis, keepdims=True)
 
 
 def _moments(x, P, weight):

@@ -189,13 +189,23 @@ def kf(z, F, Q, H, R, x0, P0):
         raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
 
     batch, samples = z.shape[:-2], z.shape[-2]
-    x, P = _checks.each_run("x0", x0, batch, (n,)), _checks.each_run("P0", P0, batch, (n, n))
+    # Covariances do not depend on the measurements: runs that begin with one P0 share them all.
+    shared = P0.ndim == 2
+    x = _checks.each_run("x0", x0, batch, (n,))
+    P = P0 if shared else _checks.each_run("P0", P0, batch, (n, n))
     steps = []
     for k in range(samples):
         x, P = _predict(x, P, F, Q)
         x, P, innovation, S = _update(x, P, z[..., k, :], H, R)
         steps.append((x, P, innovation, S))
-    x, P, innovation, S = (np.stack(values, axis=len(batch)) for values in zip(*steps, strict=True))
+    x, P, innovation, S = zip(*steps, strict=True)
+    x, innovation = (np.stack(values, axis=len(batch)) for values in (x, innovation))
+    P, S = (
+        np.broadcast_to(
+            np.stack(values, axis=0 if shared else len(batch)), (*batch, samples, size, size)
+        )
+        for values, size in ((P, n), (S, m))
+    )
     weighted = np.linalg.solve(S, innovation[..., None])[..., 0]
     nis = np.sum(innovation * weighted, axis=-1)
     return Track(x, P, innovation, S, nis, np.ones(nis.shape, bool))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _checks
-from .linear_kalman import _update
+from .linear_kalman import _check_leading, _update
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,8 @@ def radial_velocity_terms(x, P, sigma, variance="corrected"):
     P : array_like, shape (..., 2 n, 2 n)
         Covariance.
     sigma : float or array_like, shape (...)
-        Standard deviation of the measured velocity in m/s.
+        Standard deviation of the measured velocity in m/s. Leading axes of all arguments broadcast
+        against one another.
     variance : {"corrected", "printed"}
         How the variance of the second order is computed: twice the trace of C C, which is
         2 sum c_ij c_ji, or 2 sum c_ij^2 as Eq 3.22 prints it.
@@ -78,6 +79,7 @@ def radial_velocity_terms(x, P, sigma, variance="corrected"):
     P = _checks.covariance("P", P, x.shape[-1], definite=False)
     sigma = _checks.deviation("sigma", sigma)
     _checks.one_of("variance", variance, ("corrected", "printed"))
+    _check_leading({"x": (x, 1), "P": (P, 2), "sigma": (sigma, 0)})
     return _terms(x, P, sigma, variance)
 
 
@@ -91,7 +93,8 @@ def radial_velocity_update(x, P, z, sigma, variance="corrected"):
     P : array_like, shape (..., 2 n, 2 n)
         Its covariance.
     z : array_like, shape (...)
-        Measured radial velocity in m/s, positive when receding.
+        Measured radial velocity in m/s, positive when receding. Leading axes of all arguments
+        broadcast against one another.
     sigma : float or array_like, shape (...)
         Its standard deviation in m/s.
     variance : {"corrected", "printed"}
@@ -121,12 +124,10 @@ def radial_velocity_update(x, P, z, sigma, variance="corrected"):
     ([2.0, 0.1], [0.2], [[2.0]])
     """
     z = _checks.finite("z", z)
-    x, P = _checks.finite("x", x, (None,)), _checks.real("P", P)
+    x, P = _checks.finite("x", x, (None,)), _checks.finite("P", P, (None, None))
+    sigma = _checks.deviation("sigma", sigma)
+    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 0), "sigma": (sigma, 0)})
     terms = radial_velocity_terms(x, P, sigma, variance)
-    return _update_with(x, P, z, terms)
-
-
-def _update_with(x, P, z, terms):
     # kf_update forms z - H x: what it has to see is the innovation plus H x.
     linear = (terms.H @ x[..., None])[..., 0]
     shifted = z[..., None] - terms.predicted + linear
@@ -141,7 +142,7 @@ def _terms(x, P, sigma, variance):
         raise ValueError("x must not have a position of zero, where no direction is radial")
     u = Y / d[..., None]
     A = (np.eye(n) - u[..., :, None] * u[..., None, :]) / d[..., None, None]
-    B = np.zeros(P.shape)
+    B = np.zeros((*d.shape, 2 * n, 2 * n))
     B[..., :n, n:] = B[..., n:, :n] = A / 2
     C = B @ P
     H = np.concatenate([(A @ v[..., None])[..., 0], u], axis=-1)[..., None, :]

@@ -26,7 +26,8 @@ def rts_smooth(x, P, F, Q):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, or a matrix is not a covariance.
+        If shapes do not fit, a value is not finite, a matrix is not a covariance, or `F` and `Q`
+        predict a covariance that has no inverse.
 
     Notes
     -----
@@ -53,7 +54,12 @@ def rts_smooth(x, P, F, Q):
     x, P = x.copy(), P.copy()
     for k in range(K - 2, -1, -1):
         predicted = F @ P[..., k, :, :] @ F.T + Q
-        gain = np.swapaxes(np.linalg.solve(predicted, F @ P[..., k, :, :]), -1, -2)
+        try:
+            gain = np.swapaxes(np.linalg.solve(predicted, F @ P[..., k, :, :]), -1, -2)
+        except np.linalg.LinAlgError:
+            raise ValueError(
+                f"F and Q must give F P F' + Q an inverse, got a singular matrix at sample {k}"
+            ) from None
         ahead = x[..., k + 1, :] - x[..., k, :] @ F.T
         x[..., k, :] += (gain @ ahead[..., None])[..., 0]
         surprise = P[..., k + 1, :, :] - predicted

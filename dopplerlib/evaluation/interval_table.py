@@ -1,38 +1,44 @@
-"""Medians with their intervals, as a table for a page."""
+"""Medians or means with their intervals, as a table for a page."""
 
 from dataclasses import dataclass
 
-from .intervals import quantile_interval
+import numpy as np
+
+from .intervals import mean_interval, quantile_interval, share_interval
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass(frozen=True)
 class IntervalTable:
-    """Medians over runs that a notebook shows as a table.
+    """Medians, or means, over runs that a notebook shows as a table.
 
     Attributes
     ----------
     rows : dict of str to dict of str to ndarray, shape (runs,)
-        For each variant, by its name, the same quantities by theirs.
+        For each variant, by its name, the same quantities by theirs. Of booleans the table shows
+        the share that is true.
+    statistic : {"median", "mean"}
+        Means are for counts, of which a median says little.
     """
 
     rows: dict
+    statistic: str = "median"
 
     def __repr__(self):
-        return f"medians of {len(self.rows)} variants"
+        return f"{self.statistic}s of {len(self.rows)} variants"
 
     def _repr_markdown_(self):
         names = list(next(iter(self.rows.values())))
         lines = [["", *names], ["---"] * (len(names) + 1)]
         for label, quantities in self.rows.items():
-            lines.append([label, *(_cell(quantities[name]) for name in names)])
+            lines.append([label, *(self._cell(quantities[name]) for name in names)])
         return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
-
-def _cell(values):
-    median = quantile_interval(values)
-    return f"{_short(median.value)}<br>({_short(median.low)} to {_short(median.high)})"
+    def _cell(self, values):
+        interval = {"median": quantile_interval, "mean": mean_interval}[self.statistic]
+        estimate = (share_interval if np.asarray(values).dtype == bool else interval)(values)
+        return f"{_short(estimate.value)}<br>({_short(estimate.low)} to {_short(estimate.high)})"
 
 
 def _short(value):

@@ -1,4 +1,4 @@
-"""Numbers with their Monte Carlo interval: means, shares and quantiles of independent runs."""
+"""Numbers with their Monte Carlo interval: means, shares, quantiles of independent runs."""
 
 from dataclasses import dataclass
 
@@ -24,6 +24,11 @@ class Estimate:
     value: float
     low: float
     high: float
+
+    @property
+    def half_width(self):
+        """Half the length of the interval: what stands after ± where it is nearly symmetric."""
+        return (self.high - self.low) / 2
 
     def __str__(self):
         return f"{self.value:.3g} ({self.low:.3g} to {self.high:.3g})"
@@ -65,6 +70,39 @@ def mean_interval(values, confidence=0.95):
     mean = values.mean()
     half = stdtrit(len(values) - 1, (1 + confidence) / 2) * values.std(ddof=1) / len(values) ** 0.5
     return Estimate(float(mean), float(mean - half), float(mean + half))
+
+
+def rms_interval(errors, confidence=0.95):
+    """Estimate the root-mean-square error of what independent runs are drawn from.
+
+    Parameters
+    ----------
+    errors : array_like, shape (runs,)
+        One error from each run; at least two.
+    confidence : float
+        Probability with which the interval holds it.
+
+    Returns
+    -------
+    Estimate
+
+    Raises
+    ------
+    ValueError
+        See `mean_interval`.
+
+    Notes
+    -----
+    The root of the `mean_interval` of the squares. Its lower end is 0 where that one's is negative:
+    then a few runs make up nearly all of the sum.
+
+    Examples
+    --------
+    >>> print(rms_interval([3.0, -4.0, 4.0, -3.0, 4.0, 3.0]))
+    3.54 (2.91 to 4.06)
+    """
+    square = mean_interval(_runs(errors, 2) ** 2, confidence)
+    return Estimate(*(max(end, 0.0) ** 0.5 for end in (square.value, square.low, square.high)))
 
 
 def share_interval(hits, confidence=0.95):

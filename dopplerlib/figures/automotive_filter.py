@@ -1,7 +1,9 @@
 """The linear filter of an automotive target: its tracks, its lag, and where its claims hold."""
 
 import numpy as np
+from matplotlib.patches import Rectangle
 
+from ..systems.macaveiu2013.regions import decided
 from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, plain_log_ticks, styled
 
 KMH = 3.6  # km/h for each m/s
@@ -60,25 +62,36 @@ def claim_map(rows, columns, shares, settings):
     ----------
     rows, columns : tuple (str, sequence of float)
         Name and values of a setting, as `regions.claim_map` takes them.
-    shares : dict of str to ndarray, shape (rows, columns)
-        Share of the runs for each claim.
+    shares : dict of str to ndarray, shape (3, rows, columns)
+        Share of the runs for each claim, and the ends of its interval.
     settings : Settings
         Our choice, to be marked.
 
     Returns
     -------
     matplotlib.figure.Figure
+        A line surrounds the places in which a claim holds for sure; where the runs are too few to
+        tell, the place is hatched.
     """
     (row, heights), (column, widths) = rows, columns
     x, y = widths.index(getattr(settings, column)), heights.index(getattr(settings, row))
-    with styled(7.0, 5.2) as figure:
+    with styled(7.0, 6.0) as figure:
         axes = figure.subplots(2, 2, sharex=True, sharey=True)
         for ax, (title, share) in zip(axes.ravel(), shares.items(), strict=True):
-            ax.imshow(share, origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=1)
-            for (i, j), value in np.ndenumerate(share):
+            ax.imshow(share[0], origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=1)
+            verdict = decided(share)
+            for (i, j), value in np.ndenumerate(share[0]):
                 color = "black" if value > 0.6 else "white"
-                ax.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=color, size=8)
-            ax.plot(x, y, "s", mfc="none", mec=PUBLISHED, ms=20, mew=2)
+                middle = f"{100 * value:.0f}"
+                ends = f"{100 * share[1, i, j]:.0f}\N{EN DASH}{100 * share[2, i, j]:.0f}"
+                ax.text(j, i + 0.17, middle, ha="center", va="center", color=color, size=8.5)
+                ax.text(j, i - 0.23, ends, ha="center", va="center", color=color, size=6.5)
+                if not verdict[i, j]:
+                    undecided = Rectangle((j - 0.5, i - 0.5), 1, 1, fc="none", ec=color, lw=0)
+                    undecided.set(hatch="////", alpha=0.4)
+                    ax.add_patch(undecided)
+            _surround(ax, verdict > 0)
+            ax.plot(x, y, "s", mfc="none", mec=OURS, ms=24, mew=2)
             ax.grid(False)
             ax.set_xticks(range(len(widths)), [f"{one:g}" for one in widths])
             ax.set_yticks(range(len(heights)), [f"{one:g}" for one in heights])
@@ -88,6 +101,15 @@ def claim_map(rows, columns, shares, settings):
         for ax in axes[:, 0]:
             ax.set_ylabel(SETTINGS[row])
         return figure
+
+
+def _surround(ax, inside):
+    """Draw the border between the places of an image that are inside and the others."""
+    framed = np.pad(inside, 1)
+    for i, j in np.argwhere(framed[:, 1:] != framed[:, :-1]):
+        ax.plot([j - 0.5] * 2, [i - 1.5, i - 0.5], color=PUBLISHED, lw=2.5, clip_on=False)
+    for i, j in np.argwhere(framed[1:] != framed[:-1]):
+        ax.plot([j - 1.5, j - 0.5], [i - 0.5] * 2, color=PUBLISHED, lw=2.5, clip_on=False)
 
 
 def lags(w, predicted, noise, measured):

@@ -16,6 +16,15 @@ _STYLES = (
 )
 
 
+def _bars(ax, x, estimates, scale=1.0, **look):
+    """Draw estimates and their intervals."""
+    value, low, high = (
+        np.array([getattr(e, end) for e in estimates]) * scale for end in ("value", "low", "high")
+    )
+    (line,) = ax.plot(x, value, **look)
+    ax.vlines(x, low, high, color=line.get_color(), lw=1.2)
+
+
 def outliers(estimates, truth):
     """Draw where estimates fall, on a logarithmic axis, for several ratios of signal to noise.
 
@@ -42,35 +51,42 @@ def outliers(estimates, truth):
         return figure
 
 
-def threshold(snr_db, rmse, bound, predicted):
-    """Draw errors of estimators against the signal-to-noise ratio, and the bound.
+def threshold(race, names, predicted, law):
+    """Draw errors and outliers against the signal-to-noise ratio, with bound and law.
 
     Parameters
     ----------
-    snr_db : ndarray, shape (L,)
-        Ratios of a sample in dB.
-    rmse : dict of str to ndarray, shape (L,)
-        Root-mean-square errors in Hz, by label.
-    bound : ndarray, shape (L,)
-        Cramér-Rao bound in Hz.
+    race : Race
+        From `saved_race` of ``systems.mittermaier2016``.
+    names : sequence of str
+        Estimators that are drawn.
     predicted : ndarray, shape (L,)
         Root-mean-square error in Hz that bound and outliers give together.
+    law : ndarray, shape (L,)
+        Predicted share of outliers.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    with styled(7.0, 4.2) as figure:
-        ax = figure.subplots()
-        ax.plot(snr_db, bound, color=BOUND, lw=5, alpha=0.35, label="bound")
-        ax.plot(snr_db, predicted, color=BOUND, lw=1.2, ls=":", label="bound with outliers")
-        for (label, error), (color, ls, marker) in zip(rmse.items(), _STYLES, strict=False):
-            ax.plot(snr_db, error, color=color, ls=ls, marker=marker, ms=4, lw=1.2, label=label)
-        ax.set(
-            yscale="log", xlabel="signal-to-noise ratio of a sample in dB",
-            ylabel="root-mean-square error in Hz",
+    with styled(7.0, 6.2) as figure:
+        top, low = figure.subplots(2, 1, sharex=True, height_ratios=(1.5, 1))
+        top.plot(race.snr_db, race.bound, color=BOUND, lw=5, alpha=0.35, label="bound")
+        top.plot(race.snr_db, predicted, color=BOUND, lw=1.2, ls=":", label="bound with outliers")
+        low.plot(race.snr_db, law, color=BOUND, lw=1.2, ls=":")
+        for name, (color, ls, marker) in zip(names, _STYLES, strict=False):
+            look = {"color": color, "ls": ls, "marker": marker, "ms": 3.5, "lw": 1.2}
+            _bars(top, race.snr_db, race.ratio[name], race.bound, label=name, **look)
+            seen = [k for k, e in enumerate(race.outliers[name]) if e.value > 0]
+            _bars(low, race.snr_db[seen], [race.outliers[name][k] for k in seen], **look)
+        low.axhline(0.01, color=TRUTH, lw=0.8)
+        low.text(race.snr_db[-1], 0.012, "1 %", color=TRUTH, ha="right")
+        top.set(yscale="log", ylabel="root-mean-square error in Hz")
+        low.set(
+            yscale="log", ylim=(0.5 / race.windows, 1.5), ylabel="share of outliers",
+            xlabel="signal-to-noise ratio of a sample in dB",
         )  # fmt: skip
-        ax.legend(ncols=2)
+        top.legend(ncols=2)
         return figure
 
 
@@ -108,7 +124,7 @@ def best_window(T, errors, laws, limit):
     ----------
     T : ndarray, shape (M,)
         Lengths in s.
-    errors : dict of str to ndarray, shape (M,)
+    errors : dict of str to list of Estimate, length M
         Measured root-mean-square errors in Hz, by tag.
     laws : dict of str to tuple (ndarray, shape (L,), ndarray, shape (L,), float)
         For each tag lengths in s, predicted errors in Hz, and the best length in s.
@@ -125,7 +141,7 @@ def best_window(T, errors, laws, limit):
                     strict=True)  # fmt: skip
         for (tag, error), (length, law, best), color, marker, ls in looks:
             ax.plot(1e3 * length, law, color=color, ls=ls, label=f"tag at the {tag}, law")
-            ax.plot(1e3 * T, error, marker, color=color, ms=5, label="measured")
+            _bars(ax, 1e3 * T, error, color=color, ls="", marker=marker, ms=4, label="measured")
             ax.plot(1e3 * best, np.interp(best, length, law), "*", color=color, ms=15, mec="white",
                     label="best window")  # fmt: skip
         ax.axhline(limit, color=TRUTH, lw=1, ls=":", label=f"{limit:g} Hz")
@@ -146,8 +162,10 @@ def overlap(tau, law, lag, measured):
     ----------
     tau, law : ndarray, shape (M,)
         Distance of the windows over their length, and the closed form.
-    lag, measured : ndarray, shape (L,)
-        Distances at which it was measured, and the result.
+    lag : ndarray, shape (L,)
+        Distances at which it was measured.
+    measured : list of Estimate, length L
+        The results.
 
     Returns
     -------
@@ -157,7 +175,7 @@ def overlap(tau, law, lag, measured):
         ax = figure.subplots()
         ax.axhline(0, color=BOUND, lw=0.8)
         ax.plot(tau, law, color=BOUND, lw=4, alpha=0.5, label=r"$1 - 3\tau + 2\tau^3$")
-        ax.plot(lag, measured, "o", color=OURS, ms=5, label="measured")
+        _bars(ax, lag, measured, color=OURS, ls="", marker="o", ms=4, label="measured")
         ax.set(
             xlabel=r"distance of the windows over their length, $\tau$",
             ylabel="correlation of the errors",
@@ -173,9 +191,9 @@ def colored(lag, autocorrelation, belief):
     ----------
     lag : ndarray, shape (L,)
         Lags in steps.
-    autocorrelation : dict of str to ndarray, shape (L,)
+    autocorrelation : dict of str to list of Estimate, length L
         Of the innovations, by label.
-    belief : dict of str to tuple (float, float)
+    belief : dict of str to tuple (Estimate, Estimate)
         For the same labels, mean NIS and mean NEES.
 
     Returns
@@ -188,21 +206,23 @@ def colored(lag, autocorrelation, belief):
         for (label, value), (color, ls, marker) in zip(
             autocorrelation.items(), _STYLES, strict=False
         ):
-            left.plot(lag, value, color=color, ls=ls, marker=marker, ms=3.5, lw=1.2, label=label)
+            look = {"color": color, "ls": ls, "marker": marker, "ms": 3.5, "lw": 1.2}
+            _bars(left, lag, value, label=label, **look)
         left.set(xlabel="lag in steps", ylabel="autocorrelation of the innovations")
         left.legend()
         right.axhline(1, color=BOUND, lw=4, alpha=0.4)
         for i, ((nis, nees), (color, _, _)) in enumerate(
             zip(belief.values(), _STYLES, strict=False)
         ):
-            right.plot(i - 0.1, nis, "o", color=color, ms=8, mfc="white", mew=2)
-            right.plot(i + 0.1, nees, "D", color=color, ms=8)
+            _bars(right, [i - 0.15], [nis], color=color, marker="o", ms=7, mfc="white", mew=2)
+            _bars(right, [i + 0.15], [nees], color=color, marker="D", ms=5)
         right.plot([], [], "o", color=TRUTH, mfc="white", mew=2, label="mean NIS")
         right.plot([], [], "D", color=TRUTH, label="mean NEES")
         right.set(yscale="log", xticks=range(len(belief)), xlim=(-0.6, len(belief) - 0.4))
         right.set_ylabel("mean, 1 is consistent")
-        right.set_xticklabels([label.replace(", ", ",\n") for label in belief], fontsize=8)
+        names = ["\n".join(label.split(" ", 1)) for label in belief]
+        right.set_xticklabels(names, fontsize=8)
         right.legend(loc="upper left")
-        values = [value for pair in belief.values() for value in pair]
+        values = [estimate.value for pair in belief.values() for estimate in pair]
         right.set_ylim(0.6 * min(values), 2.5 * max(values))
         return figure

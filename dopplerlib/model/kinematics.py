@@ -15,7 +15,7 @@ def ncv_transition(T, dim=2, order="axis"):
     Parameters
     ----------
     T : float
-        Sampling interval in s.
+        Sampling interval in s; zero for two measurements at one time, which gives the identity.
     dim : int
         Number of axes.
     order : {"axis", "derivative"}
@@ -28,7 +28,7 @@ def ncv_transition(T, dim=2, order="axis"):
     Raises
     ------
     ValueError
-        If `T` or `dim` is not positive, or `order` is not one of the two.
+        If `T` is negative, `dim` is not positive, or `order` is not one of the two.
 
     Notes
     -----
@@ -42,7 +42,7 @@ def ncv_transition(T, dim=2, order="axis"):
     >>> ncv_transition(0.5, dim=2, order="derivative")[0].tolist()
     [1.0, 0.0, 0.5, 0.0]
     """
-    return _all_axes(_integrators(_checks.positive_number("T", T), 2), dim, order)
+    return _all_axes(_integrators(_interval(T), 2), dim, order)
 
 
 def nca_transition(T, dim=2, order="axis"):
@@ -51,7 +51,7 @@ def nca_transition(T, dim=2, order="axis"):
     Parameters
     ----------
     T : float
-        Sampling interval in s.
+        Sampling interval in s; zero for two measurements at one time, which gives the identity.
     dim : int
         Number of axes.
     order : {"axis", "derivative"}
@@ -64,7 +64,7 @@ def nca_transition(T, dim=2, order="axis"):
     Raises
     ------
     ValueError
-        If `T` or `dim` is not positive, or `order` is not one of the two.
+        If `T` is negative, `dim` is not positive, or `order` is not one of the two.
 
     Notes
     -----
@@ -75,7 +75,7 @@ def nca_transition(T, dim=2, order="axis"):
     >>> nca_transition(2.0, dim=1).tolist()
     [[1.0, 2.0, 2.0], [0.0, 1.0, 2.0], [0.0, 0.0, 1.0]]
     """
-    return _all_axes(_integrators(_checks.positive_number("T", T), 3), dim, order)
+    return _all_axes(_integrators(_interval(T), 3), dim, order)
 
 
 def wna_process_noise(T, q, dim=2, order="axis"):
@@ -84,7 +84,7 @@ def wna_process_noise(T, q, dim=2, order="axis"):
     Parameters
     ----------
     T : float
-        Sampling interval in s.
+        Sampling interval in s; over none there is no noise.
     q : float
         Spectral density of the acceleration in m^2/s^3: over a second the velocity wanders by
         sqrt(q) m/s, whatever the sampling interval.
@@ -98,7 +98,7 @@ def wna_process_noise(T, q, dim=2, order="axis"):
     Raises
     ------
     ValueError
-        If `T`, `q` or `dim` is not positive, or `order` is not one of the two.
+        If `T` is negative, `q` or `dim` is not positive, or `order` is not one of the two.
 
     Notes
     -----
@@ -118,7 +118,7 @@ def wnj_process_noise(T, q, dim=2, order="axis"):
     Parameters
     ----------
     T : float
-        Sampling interval in s.
+        Sampling interval in s; over none there is no noise.
     q : float
         Spectral density of the jerk in m^2/s^5.
     dim, order
@@ -131,7 +131,7 @@ def wnj_process_noise(T, q, dim=2, order="axis"):
     Raises
     ------
     ValueError
-        If `T`, `q` or `dim` is not positive, or `order` is not one of the two.
+        If `T` is negative, `q` or `dim` is not positive, or `order` is not one of the two.
 
     Notes
     -----
@@ -179,6 +179,13 @@ def velocity_step_noise(w, dim=2, order="axis"):
     return _all_axes(np.diag([0.0, w * w]), dim, order)
 
 
+def _interval(T):
+    T = _checks.one_number("T", T)
+    if T < 0:
+        raise ValueError(f"T must not be negative, got {T}")
+    return T
+
+
 def _integrators(T, n):
     """Return the transition of `n` integrators in a row: T^(j - i) / (j - i)!."""
     F = np.eye(n)
@@ -190,7 +197,7 @@ def _integrators(T, n):
 
 def _white_noise(T, q, n, dim, order):
     """Return the covariance that white noise of density `q` leaves behind `n` integrators."""
-    T = _checks.positive_number("T", T)
+    T = _interval(T)
     q = _checks.positive_number("q", q)
     Q = np.empty((n, n))
     for i in range(n):

@@ -75,3 +75,23 @@ def transform(x, fs, band, nfft=None, least=2):
         raise ValueError(f"band must hold a bin, a multiple of {fs / nfft:g} Hz, got {band}")
     inside = np.arange(first, last + 1)
     return Bins(scipy.fft.fft(x, nfft), inside, n, nfft, fs, low, circular)
+
+
+def about_mean(x):
+    """Return samples less their mean over the last axis: zeros, to the last bit, for a constant."""
+    x = x - x[..., :1]  # else a constant would leave the rounding of its mean
+    return x - x.mean(axis=-1, keepdims=True)
+
+
+def sum_of_ones(u, n):
+    """Return the Fourier sum of n ones about their middle, and its derivatives, at u bins.
+
+    Its sign is that of the multiple of n nearest to u: only products of two are of use.
+    """
+    a = np.pi * ((u + n / 2) % n - n / 2)
+    b = a / n
+    s, c = np.sin(b), np.cos(b)
+    D0 = np.sin(a) / s
+    D1 = np.pi * (np.cos(a) - D0 * c / n) / s
+    D2 = np.pi**2 * ((1 + c**2) * D0 / n**2 - 2 * np.cos(a) * c / n - D0 * s**2) / s**2
+    return D0, D1, D2

@@ -106,14 +106,20 @@ def _coarse(X, n, bins, halves):
 
 
 @_inline
+def _real_ratio(a, b):
+    """Return the real part of a / b; NaN for b = 0, for which numba's own division stops."""
+    return (a.real * b.real + a.imag * b.imag) / (b.real * b.real + b.imag * b.imag)
+
+
+@_inline
 def _guess(X, n, k, half):
     """Return where a tone would lie, from bin k, that explains the bins around it."""
     each = len(X) // n
     here, after = X[each * k], X[each * (k + 1 if k < n - 1 else 0)]
     if half:
-        return (after / (after - here)).real
+        return _real_ratio(after, after - here)
     before = X[each * (k - 1 if k > 0 else n - 1)]
-    return ((before - after) / (2 * here - before - after)).real
+    return _real_ratio(before - after, 2 * here - before - after)
 
 
 @_inline

@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.fft
 
-from ._bins import limits, samples
+from ._bins import about_mean, limits, samples, sum_of_ones
 
 _CHUNK = 128  # transforms at a time: these stay in the processor's cache
 _PAD = 4  # points of the grid in a bin, for the search beside a constant
@@ -115,8 +115,9 @@ def ml_frequency_dc(x, fs, band=None):
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz. Nothing tells a tone of less than a thousandth of a cycle in the window
-        from the constant: that is the smallest that is looked at.
+        Frequencies in Hz; NaN for samples that are all the same. Nothing tells a tone of less than
+        a thousandth of a cycle in the window from the constant: that is the smallest that is looked
+        at.
 
     Raises
     ------
@@ -153,7 +154,7 @@ def ml_frequency_dc(x, fs, band=None):
 def _beside_constant(x, low, high, circular):
     """Return the likeliest frequencies beside a constant, between `low` and `high`, in bins."""
     n = x.shape[-1]
-    y = x - x.mean(axis=-1, keepdims=True)
+    y = about_mean(x)
     first, last = np.ceil(low * _PAD), np.floor(high * _PAD)
     if last > first:
         grid = np.arange(first, last + 1)[: _PAD * n]
@@ -164,13 +165,15 @@ def _beside_constant(x, low, high, circular):
     u = grid / _PAD
     # 0 itself is no candidate: its neighbors stand for the range up to it.
     near = np.abs((u + n / 2) % n - n / 2) < 0.1
-    weight = n - _ones(np.where(near, 1.0, u), n)[0] ** 2 / n
+    weight = n - sum_of_ones(np.where(near, 1.0, u), n)[0] ** 2 / n
     fit = np.where(near, 0.0, (Y.real**2 + Y.imag**2) / weight)
     top = u[np.argmax(fit, axis=-1)]
     left, right = top - 1 / _PAD, top + 1 / _PAD
     if circular:
-        return low + (_climb(y, top, left, right) - low) % n
-    return _climb(y, top, np.maximum(left, low), np.minimum(right, high))
+        found = low + (_climb(y, top, left, right) - low) % n
+    else:
+        found = _climb(y, top, np.maximum(left, low), np.minimum(right, high))
+    return np.where((y != 0).any(axis=-1), found, np.nan)
 
 
 def _climb(y, start, left, right):
@@ -188,7 +191,7 @@ def _climb(y, start, left, right):
         Y0, Y1, Y2 = np.moveaxis((y * np.exp(t * u[:, None])) @ powers, -1, 0)
         P0, P1 = np.abs(Y0) ** 2, 2 * (Y0.conj() * Y1).real
         P2 = 2 * (np.abs(Y1) ** 2 + (Y0.conj() * Y2).real)
-        D0, D1, D2 = _ones(u, n)
+        D0, D1, D2 = sum_of_ones(u, n)
         W0, W1, W2 = n - D0**2 / n, -2 * D0 * D1 / n, -2 * (D1**2 + D0 * D2) / n
         slope = P1 * W0 - P0 * W1
         bend = P2 * W0 - P0 * W2 - 2 * W1 / W0 * slope
@@ -204,17 +207,3 @@ def _climb(y, start, left, right):
             break
         y, u, low, high, busy = y[left], u[left], low[left], high[left], busy[left]
     return found
-
-
-def _ones(u, n):
-    """Return the Fourier sum of n ones about their middle, and its derivatives, at u bins.
-
-    Its sign is that of the multiple of n nearest to u: only products of two are of use.
-    """
-    a = np.pi * ((u + n / 2) % n - n / 2)
-    b = a / n
-    s, c = np.sin(b), np.cos(b)
-    D0 = np.sin(a) / s
-    D1 = np.pi * (np.cos(a) - D0 * c / n) / s
-    D2 = np.pi**2 * ((1 + c**2) * D0 / n**2 - 2 * np.cos(a) * c / n - D0 * s**2) / s**2
-    return D0, D1, D2

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from ._bins import about_mean
 
 
 def add_dc(x, offset):
@@ -59,7 +60,7 @@ def remove_mean(x):
     [-1.0, 0.0, 1.0]
     """
     x = _checks.finite_complex("x", x, (None,))
-    return x - x.mean(axis=-1, keepdims=True)
+    return about_mean(x)
 
 
 def add_iq_imbalance(x, gain_db, phase_deg):
@@ -139,12 +140,13 @@ def correct_iq_imbalance(x):
     Returns
     -------
     ndarray of complex, shape (..., n)
-        I is kept.
+        I is kept. A record of zeros, from a module that is dead, stays one.
 
     Raises
     ------
     ValueError
-        If a value is not finite, or I and Q are proportional: then nothing tells them apart.
+        If a value is not finite, or if in a record with a signal I and Q are proportional: then
+        nothing tells them apart.
 
     Examples
     --------
@@ -157,9 +159,17 @@ def correct_iq_imbalance(x):
     iq = np.mean(x.real * x.imag, axis=-1, keepdims=True)
     qq = np.mean(x.imag**2, axis=-1, keepdims=True)
     left = ii * qq - iq**2  # what of Q does not follow I
-    if not (left > 1e-12 * ii * qq).all():
-        raise ValueError("x must have an I and a Q that are not proportional to each other")
-    return x.real + 1j * (ii * x.imag - iq * x.real) / np.sqrt(left)
+    dead = (ii == 0) & (qq == 0)
+    good = (left > 1e-12 * ii * qq) | dead
+    if not good.all():
+        place = tuple(int(i) for i in np.argwhere(~good[..., 0])[0])
+        where = f" at index {place}" if place else ""
+        raise ValueError(
+            "x must have an I and a Q that are not proportional to each other, got powers "
+            f"{ii[place][0]:.3g} and {qq[place][0]:.3g} with a mean product of "
+            f"{iq[place][0]:.3g}{where}"
+        )
+    return x.real + 1j * (ii * x.imag - iq * x.real) / np.sqrt(np.where(dead, 1.0, left))
 
 
 def quantize(x, bits, full_scale):

@@ -11,7 +11,8 @@ def nearest_neighbor(distance, accept=None):
     Parameters
     ----------
     distance : array_like, shape (..., D)
-        Distances of D detections from a track, or their squares.
+        Distances of D detections from a track, or their squares; NaN or infinite for one that is
+        out of the question.
     accept : array_like of bool, shape (..., D), optional
         Whether a detection passed the gate; all did if None.
 
@@ -43,7 +44,7 @@ def nearest_neighbor(distance, accept=None):
             f"accept must be made of booleans, of shape {distance.shape} like distance, "
             f"got {accept.dtype} of shape {accept.shape}"
         )
-    distance = np.where(accept & ~np.isnan(distance), distance, np.inf)
+    distance = np.where(accept & np.isfinite(distance), distance, np.inf)
     if not distance.shape[-1]:
         return np.full(distance.shape[:-1], -1)
     nearest = distance.argmin(axis=-1)
@@ -141,4 +142,4 @@ def _costs(cost, gate):
     cost = _checks.real("cost", cost)
     if cost.ndim != 2:
         raise ValueError(f"cost must have shape (tracks, detections), got {cost.shape}")
-    return np.where(np.isnan(cost), np.inf, cost), _checks.one_number("gate", gate)
+    return np.where(np.isfinite(cost), cost, np.inf), _checks.one_number("gate", gate)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from ..estimation.linear_kalman import _check_leading
 
 
 def fuse_state_vectors(x1, P1, x2, P2, P12=None):
@@ -15,7 +16,8 @@ def fuse_state_vectors(x1, P1, x2, P2, P12=None):
     P1, P2 : array_like, shape (..., n, n)
         Their covariances. Leading axes of all arguments broadcast against one another.
     P12 : array_like, shape (..., n, n), optional
-        Covariance of the error of the first with that of the second; none if None.
+        Covariance of the error of the first with that of the second; none if None. The difference
+        of the two then has the covariance P1 + P2 - P12 - P12'.
 
     Returns
     -------
@@ -25,7 +27,8 @@ def fuse_state_vectors(x1, P1, x2, P2, P12=None):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, or `P1` or `P2` is not positive definite.
+        If shapes do not fit, a value is not finite, or `P1`, `P2` or the covariance of the
+        difference is not positive definite.
 
     Notes
     -----
@@ -43,12 +46,23 @@ def fuse_state_vectors(x1, P1, x2, P2, P12=None):
     >>> fuse_state_vectors([0.0], [[1.0]], [2.0], [[1.0]], [[0.5]])[1].tolist()
     [[0.75]]
     """
-    x1, P1, x2, P2 = _estimates(x1, P1, x2, P2)
+    x1, P1, x2, P2 = _estimates(x1=x1, P1=P1, x2=x2, P2=P2)
     n = x1.shape[-1]
     P12 = np.zeros((n, n)) if P12 is None else _checks.finite("P12", P12, (n, n))
-    P21 = np.swapaxes(P12, -1, -2)
-    A = P1 - P12
-    W = np.swapaxes(np.linalg.solve(P1 + P2 - P12 - P21, np.swapaxes(A, -1, -2)), -1, -2)
+    _check_leading({"x1": (x1, 1), "P1": (P1, 2), "x2": (x2, 1), "P2": (P2, 2), "P12": (P12, 2)})
+    S = P1 + P2 - P12 - np.swapaxes(P12, -1, -2)
+    try:
+        np.linalg.cholesky(S)
+    except np.linalg.LinAlgError:
+        raise ValueError(
+            "P12 must leave P1 + P2 - P12 - P12' positive definite, got a smallest eigenvalue of "
+            f"{np.linalg.eigvalsh(S)[..., 0].min():.3g}"
+        ) from None
+    return _fused(x1, P1, x2, P1 - P12, S)
+
+
+def _fused(x1, P1, x2, A, S):
+    W = np.swapaxes(np.linalg.solve(S, np.swapaxes(A, -1, -2)), -1, -2)
     x = x1 + (W @ (x2 - x1)[..., None])[..., 0]
     return x, P1 - W @ np.swapaxes(A, -1, -2)
 
@@ -89,11 +103,14 @@ def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
     P12 = _checks.finite("P12", P12, (None, None))
     n = P12.shape[-1]
     F, Q = _checks.finite("F", F, (n, n)), _checks.finite("Q", Q, (n, n))
-    keep = []
+    leading, keep = {"P12": (P12, 2), "F": (F, 2), "Q": (Q, 2)}, []
     for K_name, K, H_name, H in (("K1", K1, "H1", H1), ("K2", K2, "H2", H2)):
         K = _checks.finite(K_name, K, (n, None))
         H = _checks.finite(H_name, H, (K.shape[-1], n))
-        keep.append(np.eye(n) - K @ H)
+        leading |= {K_name: (K, 2), H_name: (H, 2)}
+        keep.append((K, H))
+    _check_leading(leading)
+    keep = [np.eye(n) - K @ H for K, H in keep]
     return keep[0] @ (F @ P12 @ np.swapaxes(F, -1, -2) + Q) @ np.swapaxes(keep[1], -1, -2)
 
 
@@ -136,7 +153,7 @@ def covariance_intersection(x1, P1, x2, P2, w=None):
     >>> x.round(2).tolist(), P.round(2).tolist()
     ([0.9, 0.9], [[1.8, 0.0], [0.0, 1.8]])
     """
-    x1, P1, x2, P2 = _estimates(x1, P1, x2, P2)
+    x1, P1, x2, P2 = _estimates(x1=x1, P1=P1, x2=x2, P2=P2)
     I1, I2 = np.linalg.inv(P1), np.linalg.inv(P2)
     if w is None:
         w = _best_weight(P1, P2)
@@ -144,6 +161,8 @@ def covariance_intersection(x1, P1, x2, P2, w=None):
         w = _checks.finite("w", w)
         if ((w < 0) | (w > 1)).any():
             raise ValueError(f"w must be from 0 to 1, got {w}")
+        leading = {"x1": (x1, 1), "P1": (P1, 2), "x2": (x2, 1), "P2": (P2, 2), "w": (w, 0)}
+        _check_leading(leading)
     w = w[..., None, None]
     P = np.linalg.inv(w * I1 + (1 - w) * I2)
     information = w * (I1 @ x1[..., None]) + (1 - w) * (I2 @ x2[..., None])
@@ -183,20 +202,19 @@ def fuse_measurements(z1, R1, z2, R2):
     >>> z.round(3).tolist(), R.round(3).tolist()
     ([2.0], [[0.667]])
     """
-    return fuse_state_vectors(z1, R1, z2, R2)
+    z1, R1, z2, R2 = _estimates(z1=z1, R1=R1, z2=z2, R2=R2)
+    return _fused(z1, R1, z2, R1, R1 + R2)
 
 
-def _estimates(x1, P1, x2, P2):
-    x1 = _checks.finite("x1", x1, (None,))
-    n = x1.shape[-1]
-    x2 = _checks.finite("x2", x2, (n,))
-    P1, P2 = _checks.covariance("P1", P1, n), _checks.covariance("P2", P2, n)
-    leads = (x1.shape[:-1], P1.shape[:-2], x2.shape[:-1], P2.shape[:-2])
-    try:
-        np.broadcast_shapes(*leads)
-    except ValueError:
-        raise ValueError(f"leading axes must broadcast, got {leads} of x1, P1, x2, P2") from None
-    return x1, P1, x2, P2
+def _estimates(**named):
+    """Return the checked estimate, covariance, estimate, covariance that come in this order."""
+    a, A, b, B = named
+    named[a] = _checks.finite(a, named[a], (None,))
+    n = named[a].shape[-1]
+    named[b] = _checks.finite(b, named[b], (n,))
+    named[A], named[B] = _checks.covariance(A, named[A], n), _checks.covariance(B, named[B], n)
+    _check_leading({a: (named[a], 1), A: (named[A], 2), b: (named[b], 1), B: (named[B], 2)})
+    return named.values()
 
 
 def _best_weight(P1, P2):

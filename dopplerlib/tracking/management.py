@@ -1,6 +1,6 @@
 """The life of a track: tentative at first, confirmed by repeated detections, deleted at the end."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from .. import _checks
 
@@ -103,9 +103,11 @@ class TrackManager:
             return life
         recent = (*life.recent, bool(detected))[-self.window :]
         misses = 0 if detected else life.misses + 1
-        life = replace(life, recent=recent, age=life.age + 1, misses=misses)
-        if life.status == CONFIRMED:
-            return replace(life, status=DELETED) if misses >= self.delete_after else life
-        if sum(recent) >= self.hits:
-            return replace(life, status=CONFIRMED)
-        return replace(life, status=DELETED) if life.age >= self.window else life
+        age, status = life.age + 1, life.status
+        if status == CONFIRMED:
+            status = DELETED if misses >= self.delete_after else CONFIRMED
+        elif sum(recent) >= self.hits:
+            status = CONFIRMED
+        elif age >= self.window:
+            status = DELETED
+        return TrackLife(status, recent, age, misses)

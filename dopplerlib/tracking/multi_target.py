@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _checks
-from ..estimation.extended_update import ekf_innovation, ekf_update
+from ..estimation.extended_update import _corrected, _innovation
 from .association import gnn_assign
 from .management import CONFIRMED, DELETED
 
@@ -45,7 +45,7 @@ def track_scans(
     scans : sequence of ndarray, shape (detections, m)
         Measurements of each scan; their number may vary.
     F, Q : array_like, shape (n, n)
-        Transition matrix and process noise between scans.
+        Transition matrix; covariance of the process noise between two scans.
     h, H : callable
         Measurement function and its Jacobian, see `ekf_update`.
     R : array_like, shape (m, m)
@@ -61,8 +61,8 @@ def track_scans(
     wrap : sequence of int
         Components of the measurement that are angles.
     new : callable, optional
-        Takes measurements (detections, m), returns which of them may start a track or belong to a
-        tentative one; all if None.
+        Takes measurements (detections, m), returns booleans (detections,): which of them may start
+        a track or belong to a tentative one; all if None.
 
     Returns
     -------
@@ -72,7 +72,8 @@ def track_scans(
     Raises
     ------
     ValueError
-        If a scan has another number of components, or an argument is refused by a part.
+        If shapes do not fit, also those that `start`, `h`, `H` and `new` return; a value is not
+        finite; `Q` or `R` is not a covariance; or `probability` is not between 0 and 1.
 
     Notes
     -----
@@ -95,33 +96,59 @@ def track_scans(
     from scipy.special import chdtri  # here: it takes longer to load than all the rest
 
     m = _checks.matrix("R", R, (None, None)).shape[0]
+    R = _checks.covariance("R", R, m)
+    n = _checks.matrix("F", F, (None, None)).shape[0]
+    F = _checks.matrix("F", F, (n, n))
+    Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
     size = chdtri(m, 1 - _checks.probability("probability", probability))
-    F, Q = _checks.finite("F", F), _checks.finite("Q", Q)
     done, alive = [], []
     for number, scan in enumerate(scans):
-        z = _checks.finite(f"scans[{number}]", scan, (None, m))
-        may_start = np.ones(len(z), bool) if new is None or not len(z) else new(z)
-        assigned = np.full(len(alive), -1)
+        z = _checks.matrix(f"scans[{number}]", scan, (None, m))
+        may_start = np.ones(len(z), bool) if new is None or not len(z) else _allowed(new(z), len(z))
+        free = np.ones(len(z), bool)
         if alive:
             x = np.stack([track["x"][-1] for track in alive]) @ F.T
             P = F @ np.stack([track["P"][-1] for track in alive]) @ F.T + Q
-            nu, S = ekf_innovation(x[:, None], P[:, None], z, h, H, R, wrap)
-            cost = np.sum(nu * np.linalg.solve(S, nu[..., None])[..., 0], axis=-1)
+            nu, S, J = _innovation(x[:, None], P[:, None], z, h, H, R, wrap)
+            S, J = S[:, 0], np.broadcast_to(J, (len(alive), 1, *J.shape[-2:]))[:, 0]
+            cost = np.sum(nu * np.linalg.solve(S, nu.swapaxes(1, 2)).swapaxes(1, 2), axis=-1)
             cost = np.where(cost <= size, cost, np.inf)
             first = np.array([track["confirmed"][-1] for track in alive])
-            assigned[first] = assign(cost[first], size)
-            free = may_start & ~np.isin(np.arange(len(z)), assigned)
-            assigned[~first] = assign(np.where(free, cost, np.inf)[~first], size)
-            seen = np.full((len(alive), m), np.nan)
-            seen[assigned >= 0] = z[assigned[assigned >= 0]]
-            x, P, _, _ = ekf_update(x, P, seen, h, H, R, wrap)
+            assigned = np.full(len(alive), -1)
+            for some, open_to_them in ((first, True), (~first, may_start)):
+                if some.any():
+                    pairs = np.where(free & open_to_them, cost[some], np.inf)
+                    assigned[some] = assign(pairs, size)
+                    free[assigned[assigned >= 0]] = False
+            seen = assigned >= 0
+            x[seen], P[seen] = _corrected(
+                x[seen], P[seen], nu[seen, assigned[seen]], S[seen], J[seen], R
+            )
             for i, track in enumerate(alive):
                 _extend(track, number, x[i], P[i], assigned[i], manager)
-        left = np.flatnonzero(may_start & ~np.isin(np.arange(len(z)), assigned))
-        begun = [_begin(number, *start(z[i]), i, manager) for i in left]
+        left = np.flatnonzero(may_start & free)
+        x, P = _started(start(z[left]), len(left), n) if len(left) else ((), ())
+        begun = [_begin(number, *state, manager) for state in zip(x, P, left, strict=True)]
         done += begun
         alive = [track for track in alive if track["life"].status != DELETED] + begun
     return [_frozen(track) for track in done]
+
+
+def _allowed(value, detections):
+    value = np.asarray(value)
+    if value.dtype != bool or value.shape != (detections,):
+        raise ValueError(
+            f"new(z) must be made of booleans, of shape {(detections,)}, "
+            f"got {value.dtype} of shape {value.shape}"
+        )
+    return value
+
+
+def _started(states, count, n):
+    x, P = states
+    P = _checks.covariance("start(z)[1]", P, n, definite=False)
+    _checks.check_shape("start(z)[1]", P, (count, n, n))
+    return _checks.finite("start(z)[0]", x, (count, n)), P
 
 
 def _begin(number, x, P, detection, manager):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _checks
+from ..estimation.linear_kalman import _check_leading
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,8 @@ def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
     H : array_like, shape (..., m, n)
         Measurement matrix.
     R : array_like, shape (..., m, m)
-        Covariance of the measurement noise.
+        Covariance of the measurement noise. Leading axes of all arguments broadcast against one
+        another.
     detection : float
         Chance that the target is detected.
     density : float
@@ -58,8 +60,8 @@ def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
     Raises
     ------
     ValueError
-        If a shape does not fit, a probability is not between 0 and 1, or `density` is not
-        positive.
+        If a shape does not fit, a value is not finite (but for a NaN in `z`), `P` or `R` is not
+        positive definite, a probability is not between 0 and 1, or `density` is not positive.
 
     Notes
     -----
@@ -83,9 +85,12 @@ def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
     P = _checks.covariance("P", P, n)
     z = _checks.real("z", z)
     _checks.check_shape("z", z, (None, None))
+    if np.isinf(z).any():
+        raise ValueError("z must be finite, or NaN where it is missing, got an infinite value")
     m = z.shape[-1]
     H = _checks.finite("H", H, (m, n))
     R = _checks.covariance("R", R, m)
+    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 2), "H": (H, 2), "R": (R, 2)})
     detection, gate = _checks.probability("detection", detection), _checks.probability("gate", gate)
     density = _checks.positive_number("density", density)
 

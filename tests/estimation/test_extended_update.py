@@ -94,6 +94,12 @@ def test_polar_updates_are_consistent_where_the_tangent_is_the_curve():
     assert nees.mean() == pytest.approx(4, abs=5 * np.sqrt(8 / many))
 
 
+def test_leading_axes_of_accept_are_checked_like_the_others():
+    accept = np.ones(runs + 1, bool)
+    with pytest.raises(ValueError, match=r"^x, P, z, R, accept must .* \(6,\) of accept"):
+        ekf_update(x, P, z, linear_h, linear_H, R, accept=accept)
+
+
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -104,6 +110,8 @@ def test_polar_updates_are_consistent_where_the_tangent_is_the_curve():
         ("h(x)", lambda x: x),
         ("H(x)", lambda x: np.eye(n)),
         ("accept", np.ones(runs)),
+        ("wrap", (m,)),
+        ("wrap", (-1,)),
     ],
 )
 def test_bad_input_is_named(name, value):

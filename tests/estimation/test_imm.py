@@ -73,6 +73,48 @@ def test_a_model_that_cannot_be_reached_changes_nothing():
     alone = kf(Z, F1, Q1, H, R, x0, P0)
     assert (track.mode[..., 1] == 0).all()
     np.testing.assert_allclose(track.x, alone.x, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(track.P, alone.P, rtol=1e-10, atol=1e-12)
+
+
+@pytest.mark.filterwarnings("error")
+def test_not_even_if_it_alone_could_explain_the_data():
+    """Densities of a jump of 1e4: exp(-2.5e7) in the one that is possible, about 1e-5 in the other.
+
+    By hand: S = 1 + 1, the gain is one half.
+    """
+    one = np.ones((1, 1))
+    track = imm([[1e4]], [one] * 2, [0 * one, 1e8 * one], one, one, np.eye(2), [0], one, [1, 0])
+    assert track.mode.tolist() == [[1.0, 0.0]]
+    assert (track.x.item(), track.P.item()) == (5e3, 0.5)
+
+
+@pytest.mark.filterwarnings("error")
+def test_not_even_if_its_state_would_grow_beyond_all_bounds():
+    """What it does not measure it multiplies by 10, 400 times: more than a float can hold."""
+    wild = np.stack([np.eye(2), np.diag([1.0, 10.0])])
+    z = np.random.default_rng(9).normal(size=(400, 1))
+    track = imm(z, wild, Q, H, R, [[1.0, 0.0], [1.0, 0.0]], x0, P0)
+    alone = kf(z, np.eye(2), Q1, H, R, x0, P0)
+    np.testing.assert_allclose(track.x, alone.x, rtol=1e-10, atol=1e-12)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_model_that_seemed_impossible_comes_back_when_the_whole_record_speaks_for_it():
+    """Models that never switch; 400 calm samples leave the second exp(-922), no float.
+
+    A jump follows. The reference is the likelihood of the whole record, from one filter each.
+    """
+    z = np.r_[np.zeros(400), np.full(4, 50.0)][:, None]
+    one = np.ones((1, 1))
+    noises = [0 * one, 100 * one]
+    track = imm(z, [one] * 2, noises, one, one, np.eye(2), [0.0], one)
+    alone = [kf(z, one, noise, one, one, [0.0], one) for noise in noises]
+    log = np.stack([-(a.nis + np.log(a.S[..., 0, 0])) / 2 for a in alone], axis=-1).cumsum(axis=0)
+    assert log[399, 1] - log[399, 0] < -800 and log[-1, 1] > log[-1, 0] + 100
+    np.testing.assert_allclose(
+        track.mode, np.exp(log - np.logaddexp.reduce(log, axis=-1)[:, None]), rtol=1e-9
+    )
+    np.testing.assert_allclose(track.x[-1], alone[1].x[-1], rtol=1e-12)
 
 
 def test_a_model_far_from_the_data_does_not_break_it():
@@ -90,7 +132,9 @@ def test_a_model_far_from_the_data_does_not_break_it():
         ("transition", np.eye(3)),
         ("mode0", [0.5, 0.6]),
         ("mode0", [1.5, -0.5]),
+        ("z", np.empty((3, 0, 1))),
         ("F", np.eye(2)),
+        ("F", np.empty((0, 2, 2))),
         ("F", np.ones((2, 2, 3))),
         ("Q", np.stack([Q1] * 3)),
         ("R", np.zeros((1, 1))),

@@ -229,3 +229,15 @@ def test_bad_input_is_named(function, name, value, got, expected):
     message = str(raised.value)
     assert re.search(rf"got .*{re.escape(got)}", message, re.DOTALL), message
     assert expected in message
+
+
+def test_runs_that_share_their_first_covariance_are_filtered_as_if_each_had_its_own():
+    rng = np.random.default_rng(71)
+    z, F, H = rng.standard_normal((3, 6, 1)), np.array([[1.0, 0.5], [0.0, 1.0]]), np.eye(1, 2)
+    P0 = np.diag([2.0, 3.0])
+    together = kf(z, F, 0.1 * np.eye(2), H, np.eye(1), np.zeros(2), P0)
+    each = kf(z, F, 0.1 * np.eye(2), H, np.eye(1), np.zeros(2), np.stack([P0] * 3))
+    for name in ("x", "P", "innovation", "S", "nis"):
+        ours, theirs = getattr(together, name), getattr(each, name)
+        assert ours.shape == theirs.shape
+        np.testing.assert_allclose(ours, theirs, rtol=1e-13, atol=1e-15)

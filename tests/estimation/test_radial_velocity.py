@@ -76,6 +76,30 @@ def test_it_moves_the_estimate_towards_the_truth_in_the_plane():
     assert innovation[0] == pytest.approx(0.1 - np.trace(radial_velocity_terms(X, P, 0.01).C))
 
 
+def test_many_states_or_covariances_or_measurements_are_each_done_alone():
+    """Also where only one of the arguments has a leading axis."""
+    rng = np.random.default_rng(8)
+    x, z = X + 0.1 * rng.normal(size=(5, 4)), rng.normal(size=5)
+    covariances, sigma = P * rng.uniform(1, 2, (5, 1, 1)), rng.uniform(0.1, 0.2, 5)
+    cases = [(x, P, 0.1, 0.1), (X, covariances, 0.1, 0.1), (X, P, z, 0.1), (X, P, 0.1, sigma)]
+    for case in [*cases, (x, covariances, z, sigma)]:
+        got = radial_velocity_update(*case)
+        for run in range(5):
+            own = (1, 2, 0, 0)  # axes of one of each
+            one = [a[run] if np.ndim(a) > n else a for a, n in zip(case, own, strict=True)]
+            for many, alone in zip(got, radial_velocity_update(*one), strict=True):
+                many = np.broadcast_to(many, (5, *alone.shape))
+                np.testing.assert_allclose(many[run], alone, rtol=1e-12, atol=1e-15)
+
+
+def test_leading_axes_that_do_not_fit_are_named():
+    x = np.stack([X] * 3)
+    with pytest.raises(ValueError, match=r"^x, P, sigma must .* \(3,\) of x, .* \(2,\) of sigma"):
+        radial_velocity_terms(x, P, [0.1, 0.2])
+    with pytest.raises(ValueError, match=r"^x, P, z, sigma must .* \(2,\) of z"):
+        radial_velocity_update(x, P, [0.1, 0.2], 0.1)
+
+
 @pytest.mark.parametrize(
     ("x", "message"),
     [([0.0, 1.0], "x must not have a position of zero"), ([1.0, 1.0, 1.0], "x must hold pos")],

@@ -79,3 +79,8 @@ def test_shapes_that_do_not_fit_are_refused():
         rts_smooth(x, P, np.eye(3), Q)
     with pytest.raises(ValueError, match="x must be finite"):
         rts_smooth(x * np.nan, P, F, Q)
+
+
+def test_a_motion_that_forgets_without_noise_is_refused():
+    with pytest.raises(ValueError, match=r"^F and Q must give F P F' \+ Q an inverse, .* sample 2"):
+        rts_smooth(np.zeros((4, n)), np.stack([np.eye(n)] * 4), np.zeros((n, n)), 0 * Q)

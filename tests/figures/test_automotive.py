@@ -86,14 +86,27 @@ def test_three_panels_are_in_kilometers_per_hour():
     assert corners.max() == pytest.approx(3.6 * (10 + 0.975 * 2))
 
 
-def test_a_claim_map_writes_percent_and_marks_our_choice():
-    share = np.array([[0.0, 0.5], [1.0, 0.25]])
+def test_a_claim_map_tells_what_is_sure_and_what_is_not():
+    share = np.array([[0.0, 0.5], [1.0, 0.9]])
+    shares = np.stack([share, [[0.0, 0.4], [0.98, 0.85]], [[0.02, 0.6], [1.0, 0.94]]])
     rows, columns = ("sigma_p", (0.5, 1.0)), ("w", (0.01, 0.1))
     ours = SimpleNamespace(sigma_p=0.5, w=0.1)
-    figure = draw_filter.claim_map(rows, columns, {str(i): share for i in range(4)}, ours)
+    figure = draw_filter.claim_map(rows, columns, {str(i): shares for i in range(4)}, ours)
     ax = figure.axes[0]
-    assert [text.get_text() for text in ax.texts] == ["0", "50", "100", "25"]
-    assert ax.lines[0].get_xydata().tolist() == [[1.0, 0.0]]
+    texts = [text.get_text() for text in ax.texts]
+    assert texts[::2] == ["0", "50", "100", "90"]
+    assert [text.split("\N{EN DASH}") for text in texts[1::2]] == [
+        ["0", "2"], ["40", "60"], ["98", "100"], ["85", "94"],
+    ]  # fmt: skip
+    (hatched,) = ax.patches
+    assert hatched.get_xy() == (0.5, 0.5) and hatched.get_hatch()
+    *border, choice = ax.lines
+    assert choice.get_xydata().tolist() == [[1.0, 0.0]]
+    ends = [line.get_xydata() for line in border]  # four sides of the one place that is sure
+    assert len(ends) == 4
+    assert {tuple(end) for line in ends for end in line} == {
+        (-0.5, 0.5), (0.5, 0.5), (-0.5, 1.5), (0.5, 1.5),
+    }  # fmt: skip
     assert figure.axes[2].get_xlabel() == "velocity step $w$ of the filter in m/s"
     assert ax.get_ylabel().endswith("in m")
 

@@ -2,8 +2,22 @@
 
 import numpy as np
 
+from dopplerlib.evaluation.intervals import Estimate
 from dopplerlib.figures import iq, iq_study
+from dopplerlib.systems.mittermaier2016 import Race
 from tests.drawn import lines
+
+RATIO = [Estimate(2.0, 1.0, 3.0)] * 3
+SHARE = [Estimate(0.5, 0.3, 0.7), Estimate(0.1, 0.01, 0.2), Estimate(0.0, 0.0, 0.1)]
+RACE = Race(
+    np.arange(3), np.array([10.0, 2.0, 1.0]), 100, dict.fromkeys("abcdefgh", RATIO),
+    dict.fromkeys("abcdefgh", SHARE),
+)  # fmt: skip
+
+
+def bars(ax):
+    """Return the ends (B, 2) of the error bars that are drawn."""
+    return [path[:, 1] for group in ax.collections for path in group.get_segments()]
 
 
 def test_the_chain_names_every_stage_and_what_it_gives():
@@ -58,13 +72,20 @@ def test_every_estimate_is_counted():
 
 
 def test_every_estimator_has_a_look_of_its_own():
-    names = list("abcdefgh")
-    one = np.ones(3)
-    figure = iq_study.threshold(np.arange(3), dict.fromkeys(names, one), one, one)
-    drawn = lines(figure.axes[0])
-    assert {*names, "bound", "bound with outliers"} == set(drawn)
-    looks = {(drawn[n].get_color(), drawn[n].get_linestyle(), drawn[n].get_marker()) for n in names}
-    assert len(looks) == len(names)
+    drawn = lines(iq_study.threshold(RACE, list(RACE.ratio), RACE.bound, RACE.bound).axes[0])
+    assert {*RACE.ratio, "bound", "bound with outliers"} == set(drawn)
+    looks = {
+        (drawn[n].get_color(), drawn[n].get_linestyle(), drawn[n].get_marker()) for n in RACE.ratio
+    }
+    assert len(looks) == len(RACE.ratio)
+
+
+def test_errors_are_drawn_in_hertz_with_their_intervals():
+    top, low = iq_study.threshold(RACE, ["a"], RACE.bound, RACE.bound).axes
+    np.testing.assert_allclose(lines(top)["a"].get_ydata(), [20, 4, 2])
+    np.testing.assert_allclose(bars(top), [[10, 30], [2, 6], [1, 3]])
+    # No outlier was seen at the last level.
+    np.testing.assert_allclose(bars(low), [[0.3, 0.7], [0.01, 0.2]])
 
 
 def test_a_bias_of_zero_is_left_out():
@@ -75,19 +96,23 @@ def test_a_bias_of_zero_is_left_out():
 def test_the_best_window_lies_on_its_law():
     T = np.array([0.01, 0.02, 0.04])
     laws = {tag: (T, np.array([3.0, 1.0, 3.0]) * k, 0.02) for k, tag in ((1, "end"), (2, "center"))}
-    figure = iq_study.best_window(T, dict.fromkeys(laws, T), laws, 0.4)
+    figure = iq_study.best_window(T, dict.fromkeys(laws, RATIO), laws, 0.4)
     stars = [line for line in figure.axes[0].lines if line.get_marker() == "*"]
     assert [tuple(star.get_data()) for star in stars] == [([20.0], [1.0]), ([20.0], [2.0])]
 
 
 def test_the_correlation_is_drawn_as_measured_and_as_derived():
     tau = np.linspace(0, 1, 5)
-    drawn = lines(iq_study.overlap(tau, tau**2, tau[:2], tau[:2]).axes[0])
-    np.testing.assert_array_equal(drawn["measured"].get_xdata(), tau[:2])
+    (ax,) = iq_study.overlap(tau, tau**2, tau[:3], SHARE).axes
+    np.testing.assert_array_equal(lines(ax)["measured"].get_xdata(), tau[:3])
+    np.testing.assert_array_equal(lines(ax)["measured"].get_ydata(), [0.5, 0.1, 0])
+    np.testing.assert_array_equal(bars(ax)[0], [0.3, 0.7])
 
 
 def test_each_filter_shows_its_nis_and_nees():
-    left, right = iq_study.colored(np.arange(3), {"a": np.ones(3)}, {"a": (1.0, 7.0)}).axes
+    belief = {"a": (Estimate(1.0, 0.9, 1.1), Estimate(7.0, 6.0, 8.0))}
+    left, right = iq_study.colored(np.arange(3), {"a": RATIO}, belief).axes
     assert "a" in lines(left)
     heights = [line.get_ydata()[0] for line in right.lines if len(line.get_ydata()) == 1]
     assert heights == [1.0, 7.0]
+    np.testing.assert_array_equal(bars(right), [[0.9, 1.1], [6, 8]])

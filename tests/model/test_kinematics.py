@@ -42,6 +42,13 @@ def test_two_steps_are_one_of_twice_the_length(n, transition, noise, order):
     np.testing.assert_allclose(F @ Q @ F.T + Q, noise(2 * T, q, 2, order), rtol=1e-12, atol=1e-15)
 
 
+@pytest.mark.parametrize(("n", "transition", "noise"), FAMILIES)
+@pytest.mark.parametrize("order", ["axis", "derivative"])
+def test_in_no_time_nothing_moves_and_nothing_becomes_uncertain(n, transition, noise, order):
+    np.testing.assert_array_equal(transition(0, 2, order), np.eye(2 * n))
+    np.testing.assert_array_equal(noise(0.0, q, 2, order), np.zeros((2 * n, 2 * n)))
+
+
 def test_noise_of_a_velocity_step_depends_on_how_often_it_is_applied():
     F, Q = ncv_transition(T), velocity_step_noise(0.1)
     assert (F @ Q @ F.T + Q)[1, 1] == pytest.approx(2 * Q[1, 1])
@@ -61,12 +68,14 @@ def test_the_orders_hold_the_same_numbers_at_other_places(n):
 @pytest.mark.parametrize(
     ("function", "arguments", "name"),
     [
-        (ncv_transition, (0.0,), "T"),
+        (ncv_transition, (-1e-9,), "T"),
         (ncv_transition, (T, 0), "dim"),
         (ncv_transition, (T, 2, "blocks"), "order"),
         (nca_transition, (-1.0,), "T"),
         (wna_process_noise, (T, -1.0), "q"),
+        (wna_process_noise, (-1.0, 1.0), "T"),
         (wnj_process_noise, (np.nan, 1.0), "T"),
+        (wnj_process_noise, ([T], 1.0), "T"),
         (velocity_step_noise, (0.0,), "w"),
     ],
 )

@@ -168,12 +168,25 @@ def test_a_band_without_the_tone_gives_the_highest_of_what_is_in_it():
         assert np.mean(periodogram(x, f) < grid.max(axis=-1) * (1 - 1e-9)) <= 0.02
 
 
-def test_zeros_have_no_frequency():
-    x = np.zeros((2, N), dtype=complex)
+@pytest.mark.parametrize("band", [None, (50.0, 130.0)])
+@pytest.mark.parametrize("estimator", BOTH)
+def test_zeros_have_no_frequency_and_beside_a_constant_no_constant_has(estimator, band):
+    """0.1 - 0.7j and its like are no multiples of a power of two: their mean is rounded."""
+    x = np.zeros((4, N), dtype=complex)
     x[1] = np.exp(2j * np.pi * 0.1 * np.arange(N))
-    f = ml_frequency(x, FS)
+    x[2:] = [[0.1 - 0.7j], [1e-3j / 3]]
+    f = estimator(x, FS, band)
     assert np.isnan(f[0])
     assert f[1] == pytest.approx(100)
+    assert np.isnan(f[2:]).all() == (estimator is ml_frequency_dc)
+
+
+def test_a_tone_on_a_bin_leaves_zeros_at_the_others_and_that_stops_nothing():
+    """Without noise, all other bins of an unpadded transform are zero to the last bit."""
+    x = np.stack([np.ones(N), np.exp(2j * np.pi * np.arange(N) / 4)])
+    for band in [(50, 130), (300, 400), (5, 6)]:
+        f = ml_frequency(x, FS, band)
+        assert ((f >= band[0]) & (f <= band[1])).all()
 
 
 @pytest.mark.parametrize("f", [25.0, -40.0, 7.0, 300.0])

@@ -104,11 +104,28 @@ def test_beyond_full_scale_the_last_step_is_what_there_is():
     )
 
 
+def test_a_dead_module_stays_dead_and_the_others_are_corrected():
+    """Zeros, or stuck at a value: less its mean, that is zeros to the last bit."""
+    x = np.stack([WHOLE, 0 * WHOLE, 0 * WHOLE + (0.1 - 0.7j)])
+    left = correct_iq_imbalance(remove_mean(add_iq_imbalance(x, 1.0, 5.0)))
+    np.testing.assert_allclose(left[0], WHOLE, atol=1e-12)
+    np.testing.assert_array_equal(left[1:], 0)
+
+
+@pytest.mark.parametrize("correlation", [0.5, 0.99, 0.999999])
+def test_branches_that_are_hardly_apart_are_still_set_at_right_angles(correlation):
+    """What of Q does not follow I may be little: here down to two millionths of its power."""
+    q = correlation * WHOLE.real + np.sqrt(1 - correlation**2) * WHOLE.imag
+    np.testing.assert_allclose(correct_iq_imbalance(WHOLE.real + 1j * q), WHOLE, atol=1e-8)
+
+
 def test_what_makes_no_sense_is_refused_by_name():
     with pytest.raises(ValueError, match="x must have an I and a Q that are not proportional"):
         correct_iq_imbalance(np.ones(4) * (1 + 2j))
     with pytest.raises(ValueError, match="x must have an I and a Q that are not proportional"):
         correct_iq_imbalance(np.ones(4))
+    with pytest.raises(ValueError, match=r"got powers 1 and 4 with a .* of 2 at index \(1,\)"):
+        correct_iq_imbalance(np.stack([WHOLE, np.full(N, 1 + 2j)]))
     with pytest.raises(ValueError, match="bits must be a whole number of at least 1, got 0"):
         quantize(WHOLE, 0, 1.0)
     with pytest.raises(ValueError, match="full_scale must be positive, got 0"):

@@ -10,6 +10,7 @@ from scipy.signal import periodogram
 from scipy.stats import chi2
 
 from dopplerlib.signal.interpolation import (
+    _kappa,
     aboutanios_mulgrew,
     candan,
     jacobsen,
@@ -109,6 +110,30 @@ def test_a_parabola_in_logarithms_is_exact_for_a_gaussian():
     assert parabolic(x, FS, scale="log") == pytest.approx(f, abs=1e-6 * BIN)
 
 
+def kappa_slope(x):
+    """Return the derivative of the function kappa of Quinn (1997)."""
+    return (3 * x + 2) / (2 * (3 * x**2 + 6 * x + 1))
+
+
+def quinn2_ratio(d):
+    """Return the variance of Quinn's second estimate over the bound, for a long window.
+
+    To first order in the noise of three bins, of which the neighbors are d / (d + 1) and
+    d / (d - 1) times the highest one.
+    """
+    a, b = d / (d + 1), d / (d - 1)
+    left = (0.5 - 2 * d * kappa_slope(d**2)) / (1 - a) ** 2
+    right = -(0.5 + 2 * d * kappa_slope(d**2)) / (1 - b) ** 2
+    noise = left**2 * (1 + a**2) + right**2 * (1 + b**2) + 2 * left * right * a * b
+    return noise / (2 * np.sinc(d) ** 2) / (6 / (2 * np.pi) ** 2)
+
+
+def test_kappa_has_the_slope_for_which_it_was_made():
+    """By a complex step: exact to rounding."""
+    x = np.linspace(0, 2, 21)
+    np.testing.assert_allclose(_kappa(x + 1e-30j).imag / 1e-30, kappa_slope(x), rtol=1e-14)
+
+
 @pytest.mark.parametrize(
     ("estimator", "fraction", "ratio"),
     [
@@ -132,6 +157,20 @@ def test_the_variance_is_the_published_multiple_of_the_bound(estimator, fraction
     total = np.sum((estimator(x, FS) - f) ** 2) / crlb_frequency_std(10**2.5, N, FS) ** 2 / ratio
     assert chi2.ppf(FALSE_ALARM / 2, runs) * 0.95 < total
     assert total < chi2.isf(FALSE_ALARM / 2, runs) * 1.05
+
+
+@pytest.mark.parametrize(("fraction", "ratio"), [(0.0, np.pi**2 / 6), (0.25, 1.30), (0.5, 1.01)])
+def test_quinns_second_estimate_has_the_variance_of_his_weights(fraction, ratio):
+    """In 400 samples: half way, the square of the bias is a tenth of the variance in 100.
+
+    Within 2 % for what is left of it, and of second order in the noise.
+    """
+    runs, n, snr = 8000, 4 * N, 10**2.5
+    assert quinn2_ratio(fraction) == pytest.approx(ratio, rel=0.005)
+    f, x = make(np.full(runs, fraction), n, snr_db=25.0, seed=10)
+    total = np.sum((quinn2(x, FS) - f) ** 2) / crlb_frequency_std(snr, n, FS) ** 2
+    total /= quinn2_ratio(fraction)
+    assert chi2.ppf(FALSE_ALARM / 6, runs) * 0.98 < total < chi2.isf(FALSE_ALARM / 6, runs) * 1.02
 
 
 def test_quinns_second_estimate_beats_his_first_on_a_bin():
@@ -163,6 +202,15 @@ def test_a_longer_lag_sharpens_the_pulse_pair_and_narrows_what_is_unambiguous():
     alias = pulse_pair(x[0], FS, lag=50)  # around zero: FS / 50 = 20 Hz apart
     assert abs(alias) < 10
     assert (f[0] - alias) % 20 == pytest.approx(0, abs=1) or (f[0] - alias) % 20 > 19
+
+
+@pytest.mark.parametrize("lag", [1, 2, 7, 50])
+@pytest.mark.parametrize("middle", [-300.0, 0.0, 118.0, 999.0])
+def test_the_pulse_pair_finds_the_tone_that_lies_around_the_middle_of_its_band(lag, middle):
+    """Anywhere within fs / (2 lag) of it, without noise."""
+    f = middle + np.array([-0.49, -0.1, 0.3, 0.49]) * FS / lag
+    x = tone(f, FS, N, None, rng=np.random.default_rng(9))
+    np.testing.assert_allclose(pulse_pair(x, FS, (middle - 20, middle + 20), lag), f, atol=1e-9)
 
 
 @pytest.mark.parametrize("estimator", ALL, ids=lambda e: e.__name__)

@@ -13,6 +13,7 @@ from scipy.stats import binom, norm
 from dopplerlib.signal.frequency import ml_frequency
 from dopplerlib.signal.laws import (
     crlb_frequency_std,
+    crlb_frequency_std_dc,
     integrated_snr_for_std,
     optimal_window_center,
     optimal_window_end,
@@ -36,6 +37,33 @@ def test_the_bound_is_the_inverse_of_the_fisher_information(n, snr, fs):
     information = 2 * (columns.conj() @ columns.T).real  # the noise has variance 1
     expected = np.sqrt(np.linalg.inv(information)[2, 2])
     np.testing.assert_allclose(crlb_frequency_std(snr, n, fs), expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("cycles", [0.01, 0.5, 1.0, 1.5, 4.3, 124.9, -0.5, 250.5])
+def test_the_bound_beside_a_constant_is_the_inverse_of_the_fisher_information(cycles):
+    """Of five numbers; the one of the frequency is what the four others leave, by least squares.
+
+    The closed form loses digits where tone and constant are nearly the same, as cycles^-4.
+    """
+    n, snr, fs = 250, 3.0, 1e4
+    f = cycles * fs / n
+    t = (np.arange(n) - 40.0) / fs  # the moment to which the phase belongs does not matter
+    a, wave = np.sqrt(snr), np.exp(1j * (2 * np.pi * f * t + 0.7))
+    columns = np.stack([wave, 1j * wave, np.ones(n), 1j * np.ones(n), 2j * np.pi * t * a * wave])
+    real = np.concatenate([columns.real, columns.imag], axis=1)
+    others, own = real[:4].T, real[4]
+    left = own - others @ np.linalg.lstsq(others, own, rcond=1e-15)[0]
+    expected = 1 / np.sqrt(2 * left @ left)  # the noise has variance 1
+    np.testing.assert_allclose(crlb_frequency_std_dc(f, snr, n, fs), expected, rtol=1e-6)
+
+
+def test_a_constant_costs_nothing_beside_many_cycles_and_everything_beside_none():
+    alone = crlb_frequency_std(1.0, 100, 100.0)
+    beside = crlb_frequency_std_dc([0.0, 1e-9, 0.5, 1.0, 30.5], 1.0, 100, 100.0)
+    assert np.isinf(beside[0])
+    assert beside[1] > 1e3 * alone
+    assert (beside[2:] >= alone).all()
+    assert beside[-1] == pytest.approx(alone, rel=1e-3)
 
 
 def test_the_window_is_the_one_in_which_the_bound_has_the_wanted_size():
@@ -144,6 +172,9 @@ def test_what_makes_no_sense_is_refused_by_name():
         (lambda: crlb_frequency_std(-1, 10, 1), "snr must be positive, got -1"),
         (lambda: crlb_frequency_std(1, 1, 1), "n must be at least 2, got 1"),
         (lambda: crlb_frequency_std(1, 10, 0), "fs must be positive, got 0"),
+        (lambda: crlb_frequency_std_dc(np.nan, 1, 9, 1), "f must be finite, got nan"),
+        (lambda: crlb_frequency_std_dc(1, 0, 9, 1), "snr must be positive, got 0"),
+        (lambda: crlb_frequency_std_dc(1, 1, 2, 1), "n must be at least 3, got 2"),
         (lambda: window_for_std(0, 1), "std must be positive, got 0"),
         (lambda: integrated_snr_for_std(1, -1), "T must be positive, got -1"),
         (lambda: outlier_probability(1, 1), "candidates must be at least 2, got 1"),

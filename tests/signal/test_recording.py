@@ -1,6 +1,7 @@
 """What is written reads back the same; what is broken is refused with the reason."""
 
 import json
+import struct
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta, timezone
 
@@ -11,6 +12,7 @@ from scipy.io import wavfile
 from dopplerlib.signal.recording import Recording, read_sigmf, read_wav, write_sigmf, write_wav
 
 NOON = datetime(2016, 9, 28, 12, 0, 0, 1500, tzinfo=UTC)
+NAIVE = datetime(2016, 9, 28, 12)  # noon somewhere
 
 
 @pytest.fixture
@@ -64,10 +66,46 @@ def test_whole_numbers_in_wav_are_scaled(tmp_path, kind):
     assert read_wav(tmp_path / "a.wav", 24e9).x.tolist() == [[-1 + 0j]]
 
 
+@pytest.mark.parametrize("kind", ["f8", "f4", "i4", "i2", "u4", "u2", "i1", "u1"])
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_every_kind_of_complex_samples_is_read(recording, tmp_path, kind, order):
+    """From the least to the largest number of its kind: -1 and 1 less a unit of the last digit."""
+    number, bits = np.dtype(order + kind), 8 * int(kind[1])
+    if kind[0] == "f":
+        values = np.array([-1.5, 0.25, 2.0**-20, 3.0, 0.0, -7.0])
+        expected = values
+    else:
+        info = np.iinfo(number)
+        values = np.array([info.min, info.max, (info.min + info.max + 1) // 2] * 2)
+        expected = np.array([-1, 1 - 2.0 ** (1 - bits), 0] * 2)
+    meta = write_sigmf(tmp_path / "a", replace(recording, x=np.ones((1, 3))))
+    (tmp_path / "a.sigmf-data").write_bytes(values.astype(number).tobytes())
+    name = f"c{kind[0]}{bits}" + ("" if bits == 8 else {"<": "_le", ">": "_be"}[order])
+    edit(meta, lambda c: c["global"].update({"core:datatype": name}), keep_hash=False)
+    np.testing.assert_array_equal(read_sigmf(meta).x, expected.view(complex)[None])
+
+
+def test_the_least_number_of_16_bits_is_written(recording, tmp_path):
+    x = np.array([[-1, 1 - 2**-15, -1j, 0.5]])
+    meta = write_sigmf(tmp_path / "a", replace(recording, x=x), "int16")
+    np.testing.assert_array_equal(read_sigmf(meta).x, x)
+
+
 def test_a_time_of_another_zone_is_the_same_moment(recording, tmp_path):
     east = NOON.astimezone(timezone(timedelta(hours=5)))
     meta = write_sigmf(tmp_path / "a", replace(recording, start=east))
     assert read_sigmf(meta).start == NOON
+    edit(meta, lambda c: c["captures"][0].update({"core:datetime": "2016-09-28T17:00:00.0015+05"}))
+    assert read_sigmf(meta).start == NOON
+    assert read_sigmf(meta).start.tzinfo is UTC
+
+
+def test_what_nobody_has_to_understand_changes_nothing(recording, tmp_path):
+    """An optional extension, and names of one that is not announced."""
+    meta = write_sigmf(tmp_path / "a", recording)
+    optional = {"name": "antenna", "version": "1.0.0", "optional": True}
+    edit(meta, lambda c: c["global"].update({"core:extensions": [optional], "radar:range": 3}))
+    assert same(read_sigmf(meta), recording)
 
 
 def test_a_stereo_file_from_elsewhere_has_i_left_and_q_right(tmp_path):
@@ -75,9 +113,11 @@ def test_a_stereo_file_from_elsewhere_has_i_left_and_q_right(tmp_path):
     assert read_wav(tmp_path / "a.wav", 24e9).x.tolist() == [[0.25 + 0.5j, -0.5j]]
 
 
-def edit(meta, change):
+def edit(meta, change, keep_hash=True):
     content = json.loads(meta.read_text())
     change(content)
+    if not keep_hash:
+        del content["global"]["core:sha512"]
     meta.write_text(json.dumps(content))
 
 
@@ -101,9 +141,54 @@ def test_a_changed_sigmf_file_is_refused(recording, tmp_path):
         read_sigmf(meta)
 
 
+def put(part, name, value):
+    """Return a change of metadata."""
+    return lambda c: (c["global"] if part == "global" else c["captures"][0]).update(
+        {f"core:{name}": value}
+    )
+
+
+WEIRD = {"name": "weird", "version": "1.0.0", "optional": False}
+
+
 @pytest.mark.parametrize(
     "change, message",
     [
+        (put("global", "sample_rate", np.nan), "numbers must be finite, got NaN"),
+        (put("global", "sample_rate", -np.inf), "numbers must be finite, got -Infinity"),
+        (put("global", "sample_rate", 0), "sample_rate: 0 is less than"),
+        (put("global", "sample_rate", 1e13), "sample_rate: 1.*e.13|10000000000000"),
+        (put("global", "sample_rate", True), "sample_rate: True is not of type 'number'"),
+        (put("capture", "frequency", np.nan), "numbers must be finite, got NaN"),
+        (put("capture", "frequency", 0), "positive carrier frequency, got 0"),
+        (put("capture", "frequency", -24e9), "positive carrier frequency, got -24"),
+        (put("capture", "frequency", "24 GHz"), "frequency: '24 GHz' is not of type 'number'"),
+        (put("capture", "frequency", [24e9]), "frequency: .* is not of type 'number'"),
+        (put("capture", "datetime", "yesterday"), "datetime: 'yesterday' does not match"),
+        (put("capture", "datetime", 5), "datetime: 5 is not of type 'string'"),
+        (put("capture", "datetime", "2016-02-30T12:00:00Z"), "is no sound .*day"),
+        (put("capture", "datetime", "2016-09-28T12:00:00"), "core:datetime .* with a time zone"),
+        (put("capture", "sample_start", 10), "core:sample_start must be 0, got 10"),
+        (put("capture", "header_bytes", 16), "must not have core:header_bytes, got 16"),
+        (put("global", "offset", 100), "core:offset must be 0, got 100"),
+        (put("global", "trailing_bytes", 16), "must not have core:trailing_bytes, got 16"),
+        (put("global", "dataset", "b.bin"), "must not have core:dataset, got 'b.bin'"),
+        (put("global", "metadata_only", True), "must not have core:metadata_only, got True"),
+        (put("global", "num_channels", 0), "num_channels: 0 is less than the minimum of 1"),
+        (put("global", "num_channels", 1.5), "num_channels: 1.5 is not of type 'integer'"),
+        (put("global", "num_channels", 3.0), "num_channels must be a whole number, got 3.0"),
+        (put("global", "num_channels", "3"), "num_channels: '3' is not of type 'integer'"),
+        (put("global", "num_channels", 7), "samples must be a multiple of 112 bytes, got 1920"),
+        (put("global", "datatype", 5), "datatype: 5 is not of type 'string'"),
+        (put("global", "datatype", "cf32"), "datatype must be one of SigMF, got 'cf32'"),
+        (put("global", "datatype", "ci8_le"), "datatype must be one of SigMF, got 'ci8_le'"),
+        (put("global", "datatype", "cf32_le,"), "datatype must be one of SigMF, got 'cf32_le,'"),
+        (put("global", "version", "9.9.9"), "version must be one of SigMF 1, got 9.9.9"),
+        (put("global", "version", "0.0.1"), "version must be one of SigMF 1, got 0.0.1"),
+        (put("global", "extensions", [WEIRD]), "must do without extensions, got 'weird'"),
+        (lambda c: c.pop("captures"), "'captures' is a required property"),
+        (lambda c: c.update({"captures": {}}), "captures: {} is not of type 'array'"),
+        (lambda c: c["global"].pop("core:datatype"), "'core:datatype' is a required property"),
         (lambda c: c["global"].pop("core:sample_rate"), "positive sampling rate, got None"),
         (lambda c: c["captures"][0].pop("core:frequency"), "positive carrier frequency, got None"),
         (lambda c: c["captures"].append({"core:sample_start": 9}), "must have one capture, got 2"),
@@ -117,6 +202,35 @@ def test_a_changed_sigmf_file_is_refused(recording, tmp_path):
 def test_sigmf_that_leaves_something_open_is_refused(recording, tmp_path, change, message):
     meta = write_sigmf(tmp_path / "a", recording)
     edit(meta, change)
+    with pytest.raises(ValueError, match=rf"^a.sigmf-meta .*{message}"):
+        read_sigmf(meta)
+
+
+@pytest.mark.parametrize(
+    "text", [b"", b"[]", b"null", b"3", b'"a"', b"[" * 100_000, b"\xff\xfe", bytes(range(256))]
+)  # fmt: skip
+def test_metadata_that_are_none_are_refused(recording, tmp_path, text):
+    meta = write_sigmf(tmp_path / "a", recording)
+    meta.write_bytes(text)
+    with pytest.raises(ValueError, match=r"^a.sigmf-meta is no sound SigMF recording: ."):
+        read_sigmf(meta)
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (lambda b: b"", "a.sigmf-meta must hold samples, got none"),
+        (lambda b: b[:-7], "samples must be a multiple of 48 bytes, got 1913"),
+        (lambda b: b[:-16], "samples must be a multiple of 48 bytes, got 1904"),
+        (lambda b: b[:-8] + np.array(np.nan).tobytes(), "in a.sigmf-meta must be finite, got .*n"),
+        (lambda b: np.array(-np.inf).tobytes() + b[8:], "in a.sigmf-meta must be finite, got .*i"),
+    ],
+)  # fmt: skip
+def test_samples_without_a_hash_are_looked_at_all_the_same(recording, tmp_path, change, message):
+    meta = write_sigmf(tmp_path / "a", recording)
+    edit(meta, lambda c: None, keep_hash=False)
+    data = tmp_path / "a.sigmf-data"
+    data.write_bytes(change(data.read_bytes()))
     with pytest.raises(ValueError, match=message):
         read_sigmf(meta)
 
@@ -137,6 +251,51 @@ def test_a_cut_wav_file_is_refused(recording, tmp_path, cut):
     path.write_bytes(path.read_bytes()[:-cut])
     with pytest.raises(ValueError, match=r"a.wav is no sound WAV file: "):
         read_wav(path, 24e9)
+
+
+def header(place, kind, value):
+    """Return a change of a number in the header, counted from the word "fmt "."""
+
+    def change(content):
+        at = content.index(b"fmt ") + place
+        number = struct.pack(kind, value)
+        return content[:at] + number + content[at + len(number) :]
+
+    return change
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (lambda b: b"", "is no sound WAV file: "),
+        (lambda b: b[:12], "is no sound WAV file: "),
+        (lambda b: b[:44], "is no sound WAV file: "),
+        (lambda b: b"RIFFxxxxWAVE" + bytes(100), "is no sound WAV file: "),
+        (header(10, "<H", 0), "is no sound WAV file: "),
+        (header(10, "<H", 4), "is no sound WAV file: "),
+        (header(12, "<I", 0), "must tell a positive sampling rate, got 0"),
+    ],
+)  # fmt: skip
+def test_a_malformed_wav_file_is_refused(recording, tmp_path, change, message):
+    path = write_wav(tmp_path / "a.wav", recording)
+    path.write_bytes(change(path.read_bytes()))
+    with pytest.raises(ValueError, match=f"^a.wav {message}"):
+        read_wav(path, 24e9)
+
+
+@pytest.mark.parametrize(
+    "values, message",
+    [
+        (np.zeros((0, 2), np.int16), "a.wav must hold samples, got none"),
+        (np.array([[1.0, np.nan]], np.float32), "in a.wav must be finite, got .*nan"),
+        (np.array([[np.inf, 0.0]]), "in a.wav must be finite, got .*inf"),
+        (np.zeros((5, 3), np.int16), "a.wav must have two channels a sensor, I and Q, got 3"),
+    ],
+)  # fmt: skip
+def test_wav_without_samples_or_with_strange_ones_is_refused(tmp_path, values, message):
+    wavfile.write(tmp_path / "a.wav", 1000, values)
+    with pytest.raises(ValueError, match=message):
+        read_wav(tmp_path / "a.wav", 24e9)
 
 
 def test_a_wav_file_with_an_odd_channel_is_refused(tmp_path):
@@ -167,6 +326,35 @@ def test_files_that_do_not_belong_together_are_refused(recording, tmp_path, othe
 @pytest.mark.parametrize(
     "call, message",
     [
+        (lambda r, d: read_sigmf(None), "paths must be a path or .* of paths, got None"),
+        (lambda r, d: read_sigmf(5), "paths must be a path or a sequence of paths, got 5"),
+        (lambda r, d: read_sigmf(b"a"), "paths must be a path or a sequence of paths, got b'a'"),
+        (lambda r, d: read_wav([None], 24e9), r"paths must be .*, got \[None\]"),
+        (lambda r, d: read_wav(d, 24e9), "paths must be files that exist, got"),
+        (lambda r, d: read_wav(d / "a", np.nan), "carrier must be finite, got nan"),
+        (lambda r, d: read_wav(d / "a", "24 GHz"), "carrier must be .*got '24 GHz'"),
+        (lambda r, d: read_wav(d / "a", 24e9, "noon"), "start must be a datetime .*got 'noon'"),
+        (lambda r, d: read_wav(d / "a", 24e9, 5.0), "start must be a datetime .*got 5.0"),
+        (lambda r, d: read_wav(d / "a", 24e9, NAIVE), "start must be .* a time zone .*, got "),
+        (lambda r, d: write_sigmf(5, r), "path must be the path of a file, got 5"),
+        (lambda r, d: write_wav(d, r), "path must be that of a file in a folder that exists, got"),
+        (lambda r, d: write_wav("", r), "path must be that of a file .*, got ''|got '.'"),
+        (lambda r, d: write_wav(None, r), "path must be the path of a file, got None"),
+        (lambda r, d: write_sigmf(d / "no" / "a", r), "in a folder that exists, got '.*no.a'"),
+        (lambda r, d: write_wav(d / "no" / "a", r), "in a folder that exists, got '.*no.a'"),
+        (lambda r, d: write_sigmf(d / "a.sigmf-meta", r), "must be without .sigmf-meta and"),
+        (lambda r, d: write_sigmf(d / "a", r, description=5), "description must be a str, got 5"),
+        (lambda r, d: write_sigmf(d / "a", replace(r, start="noon")), "recording.start .* 'noon'"),
+        (lambda r, d: write_sigmf(d / "a", replace(r, start=NAIVE)), "start must .* a time zone"),
+        (lambda r, d: write_wav(d / "a", replace(r, start=5)), "recording.start must .*, got 5"),
+        (lambda r, d: write_sigmf(d / "a", replace(r, fs=2e12)), "fs must be at most .*got 2e.12"),
+        (lambda r, d: write_sigmf(d / "a", replace(r, fs=np.nan)), "recording.fs must be finite"),
+        (lambda r, d: write_sigmf(d / "a", replace(r, carrier=2e13)), "carrier .* most .*2e.13"),
+        (lambda r, d: write_sigmf(d / "a", replace(r, x=r.x * np.nan)), "recording.x must be fin"),
+        (lambda r, d: write_sigmf(d / "a", replace(r, x=r.x * 1e39), "complex64"), "most 3.4e.38"),
+        (lambda r, d: write_sigmf(d / "a", replace(r, x=np.ones((1, 1))), "int16"), "got 1 *$"),
+        (lambda r, d: write_wav(d / "a", replace(r, fs=5e9)), "fs must be less than 8.9.*e.07"),
+        (lambda r, d: write_wav(d / "a", replace(r, x=np.ones((4096, 1)))), "at most 4095 sensors"),
         (lambda r, d: read_sigmf([]), "paths must name at least one file, got none"),
         (lambda r, d: read_sigmf(d / "none.sigmf-meta"), "must be files .sigmf-meta that exist"),
         (lambda r, d: read_wav(d / "none.wav", 24e9), "paths must be files that exist, got"),
@@ -183,3 +371,28 @@ def test_bad_input_is_refused_and_leaves_no_file(recording, tmp_path, call, mess
     with pytest.raises(ValueError, match=message):
         call(recording, tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["validate", "dumps"])
+def test_what_fails_half_way_leaves_the_older_files_as_they_were(
+    recording, tmp_path, monkeypatch, name
+):
+    write_sigmf(tmp_path / "a", recording)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def fail(*args, **kwargs):
+        raise OSError("no space left")
+
+    monkeypatch.setattr(f"sigmf.SigMFFile.{name}", fail)
+    with pytest.raises(OSError, match="no space left"):
+        write_sigmf(tmp_path / "a", replace(recording, x=2 * recording.x))
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_the_same_file_is_no_second_sensor(recording, tmp_path):
+    meta, wav = write_sigmf(tmp_path / "a", recording), write_wav(tmp_path / "a.wav", recording)
+    again = tmp_path / "b.wav"
+    again.symlink_to(wav)
+    for call in (lambda: read_sigmf([meta, str(meta)]), lambda: read_wav([wav, again], 24e9)):
+        with pytest.raises(ValueError, match=r"paths must be different files, got .* twice"):
+            call()

@@ -115,6 +115,12 @@ def test_a_velocity_profile_is_the_integral_of_its_acceleration():
     assert v[-1] == pytest.approx(252)
 
 
+def test_the_acceleration_at_the_ends_of_a_segment_is_that_of_what_follows():
+    """So that one segment after the other leaves no sample with both or none of them."""
+    _, a = velocity_profile([1.0, 2.0, 3.0, 4.0], 0, [(2, 3, 5.0), (3, 4, 7.0)])
+    assert a.tolist() == [0, 5, 7, 0]
+
+
 def test_the_same_seed_gives_the_same_bits():
     for make in (
         lambda g: tone([1.0, 2.0], 100.0, 50, 3.0, rng=g),

@@ -58,6 +58,7 @@ def test_two_crossing_targets_by_hand():
 @pytest.mark.parametrize("assign", [gnn_assign, greedy_assign])
 def test_pairs_outside_the_gate_are_never_made(assign):
     assert assign([[np.inf, np.nan], [4.0, 9.0]], GATE).tolist() == [-1, -1]
+    assert assign([[-np.inf, 1.0], [2.0, -np.inf]], GATE).tolist() == [1, 0]
     assert assign(np.empty((2, 0)), GATE).tolist() == [-1, -1]
     assert assign(np.empty((0, 2)), GATE).tolist() == []
 
@@ -76,6 +77,7 @@ def test_the_nearest_of_nothing_is_none():
     assert nearest_neighbor(np.empty((3, 0))).tolist() == [-1, -1, -1]
     assert nearest_neighbor([np.nan, 2.0, np.inf]) == 1
     assert nearest_neighbor([np.nan, np.inf]) == -1
+    assert nearest_neighbor([-np.inf, 2.0]) == 1
 
 
 @pytest.mark.parametrize(

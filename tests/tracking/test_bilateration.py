@@ -1,5 +1,7 @@
 """Two circles meet where they should, and where they don't it is said."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -54,6 +56,19 @@ def test_the_circles_meet_if_three_sides_make_a_triangle(d1, d2, b):
         assert valid == (margins > 0).all()
     assert np.isnan(y) == (not valid)
     assert np.isfinite(x)
+
+
+@pytest.mark.parametrize("b", [0.1, 0.3, 0.7, 1.1])
+@pytest.mark.parametrize("steps", [1, 2, 5])
+def test_circles_that_hardly_meet_do_so_where_rational_arithmetic_says(b, steps):
+    """Ranges a few last digits over half the baseline: their squares would have cancelled."""
+    d = b / 2
+    for _ in range(steps):
+        d = np.nextafter(d, 9)
+    x, y, valid = bilaterate(d, d, b)
+    square = Fraction(d) ** 2 - Fraction(b) ** 2 / 4
+    assert valid and x == 0
+    assert y == pytest.approx(np.sqrt(float(square)), rel=1e-14)  # some roundings
 
 
 def test_a_missing_or_a_negative_range_has_no_position():

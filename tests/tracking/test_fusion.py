@@ -159,14 +159,30 @@ def test_the_weight_of_an_intersection_has_the_least_determinant(two):
         assert (best <= np.linalg.det(covariance_intersection(*two, w)[1]) * (1 + 1e-9)).all()
 
 
+def test_an_estimate_and_itself_or_what_cannot_be_are_refused():
+    """Their difference is known to be zero; or its variance would be 1 + 1 - 3 = -1."""
+    for P12, least in (([[1.0]], "0"), ([[1.5]], "-1")):
+        with pytest.raises(ValueError, match=f"^P12 must leave .* smallest eigenvalue of {least}$"):
+            fuse_state_vectors([0.0], [[1.0]], [2.0], [[1.0]], P12)
+
+
 def test_what_does_not_fit_is_refused():
     x, P = np.zeros(2), np.eye(2)
     with pytest.raises(ValueError, match="P2 must be positive definite"):
         fuse_state_vectors(x, P, x, -P)
     with pytest.raises(ValueError, match="x2 must have shape"):
         fuse_state_vectors(x, P, np.zeros(3), P)
-    with pytest.raises(ValueError, match="leading axes must broadcast"):
+    with pytest.raises(ValueError, match=r"^x1, P1, x2, P2 must have leading axes that broadcast"):
         fuse_state_vectors(np.zeros((2, 2)), P, np.zeros((3, 2)), P)
+    with pytest.raises(ValueError, match=r"P12 must have leading axes .* of P12$"):
+        fuse_state_vectors(np.zeros((3, 2)), P, x, P, np.zeros((4, 2, 2)))
+    with pytest.raises(ValueError, match=r"w must have leading axes .* of w$"):
+        covariance_intersection(np.zeros((3, 2)), P, x, P, np.full(4, 0.5))
+    with pytest.raises(ValueError, match=r"H2 must have leading axes .* of H2$"):
+        K, H = np.ones((2, 1)), np.ones((1, 2))
+        cross_covariance_step(np.stack([P] * 3), P, P, K, H, K, np.stack([H] * 4))
+    with pytest.raises(ValueError, match=r"^R2 must be positive definite"):
+        fuse_measurements(x, P, x, -P)
     with pytest.raises(ValueError, match="w must be from 0 to 1"):
         covariance_intersection(x, P, x, P, 1.5)
     with pytest.raises(ValueError, match="H2 must have shape"):

@@ -5,6 +5,7 @@ import pytest
 
 from dopplerlib import TrackManager, kf
 from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.model.polar_radar import polar_radar_h, polar_radar_jacobian
 from dopplerlib.tracking.association import greedy_assign
 from dopplerlib.tracking.multi_target import track_scans
 
@@ -96,6 +97,62 @@ def test_false_alarms_are_confirmed_as_often_as_the_binomial_says():
     assert abs(confirmed.mean() - 0.36) < 5 * np.sqrt(0.36 * 0.64 / len(confirmed))
 
 
+def test_a_target_that_passes_behind_the_radar_keeps_its_track():
+    """Its azimuth jumps between -pi and pi, with the noise also back and forth.
+
+    Turned to the front, all signs of the track turn.
+    """
+    F2, Q2 = ncv_transition(T, dim=2), wna_process_noise(T, 0.1, dim=2)
+    deviations = np.array([0.1, 0.01, 0.1])
+    truth = np.array([-0.05, 0.01, 5.0, 0.0]) * np.ones((K, 1))
+    truth[:, 0] += 0.01 * T * np.arange(K)
+    front = polar_radar_h(truth) + deviations * np.random.default_rng(36).standard_normal((K, 3))
+    behind = front.copy()
+    behind[:, 1] = (front[:, 1] + 2 * np.pi) % (2 * np.pi) - np.pi  # half a turn further
+    assert np.sum(np.abs(np.diff(behind[:, 1])) > 6) >= 5
+
+    def begin(z):
+        x, y = z[..., 0] * np.sin(z[..., 1]), z[..., 0] * np.cos(z[..., 1])
+        states = np.stack([x, 0 * x, y, 0 * y], axis=-1)
+        return states, np.broadcast_to(np.diag([0.1, 1.0, 0.1, 1.0]), (*x.shape, 4, 4))
+
+    tracks = [
+        track_scans(
+            z[:, None], F2, Q2, polar_radar_h, polar_radar_jacobian, np.diag(deviations**2),
+            begin, MANAGER, probability=0.999999, wrap=(1,),
+        )
+        for z in (front, behind)
+    ]  # fmt: skip
+    (seen,), (turned,) = tracks
+    assert turned.scan.tolist() == list(range(K)) and (turned.detection == 0).all()
+    np.testing.assert_allclose(turned.x, -seen.x, rtol=1e-9, atol=1e-9)
+
+
 def test_a_scan_of_another_kind_is_refused():
     with pytest.raises(ValueError, match=r"scans\[1\] must have shape"):
         run([np.zeros((1, 1)), np.zeros((1, 2))])
+    with pytest.raises(ValueError, match=r"scans\[1\] must be one matrix"):
+        run([np.zeros((1, 1)), np.zeros((2, 3, 1))])
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("F", np.ones((2, 3))),
+        ("F", np.ones((3, 2, 2))),
+        ("Q", np.eye(3)),
+        ("Q", -np.eye(2)),
+        ("start(z)[0]", lambda z: (z, start(z)[1])),
+        ("start(z)[1]", lambda z: (start(z)[0], np.eye(2))),
+        ("start(z)[1]", lambda z: (start(z)[0], -start(z)[1])),
+        ("new(z)", lambda z: np.array([0])),
+        ("new(z)", lambda z: [True]),
+        ("wrap", (1,)),
+    ],
+)
+def test_bad_input_is_named(name, value):
+    arguments = {"F": F, "Q": Q, "R": R, "start": start, "manager": MANAGER}
+    arguments |= {name.partition("(")[0]: value}
+    with pytest.raises(ValueError) as raised:
+        track_scans([np.zeros((2, 1))] * 2, h=lambda x: x @ H.T, H=lambda x: H, **arguments)
+    assert str(raised.value).startswith(f"{name} must ")

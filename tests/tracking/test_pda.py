@@ -71,6 +71,21 @@ def test_many_runs_are_each_done_alone():
         np.testing.assert_allclose(together.P[i], alone.P, rtol=1e-12)
 
 
+def test_a_detection_however_far_outside_the_gate_changes_nothing_but_an_infinite_one_is_refused():
+    near = np.array([0.5, 0.2])
+    alone = pda_update(X, P, near[None], H, R, detection=0.9, density=0.1)
+    both = pda_update(X, P, [near, [1e100, -1e100]], H, R, detection=0.9, density=0.1)
+    np.testing.assert_allclose(both.x, alone.x, rtol=1e-12)
+    np.testing.assert_allclose(both.P, alone.P, rtol=1e-12)
+    with pytest.raises(ValueError, match=r"^z must be finite, or NaN where it is missing"):
+        pda_update(X, P, [near, [np.inf, 0.0]], H, R, detection=0.9, density=0.1)
+
+
+def test_leading_axes_that_do_not_fit_are_named():
+    with pytest.raises(ValueError, match=r"^x, P, z, H, R must .* \(3,\) of x, .* \(4,\) of z"):
+        pda_update(np.zeros((3, 2)), P, np.zeros((4, 5, 2)), H, R, detection=0.9, density=0.1)
+
+
 def test_what_is_no_probability_is_refused():
     with pytest.raises(ValueError, match="detection must lie between 0 and 1"):
         pda_update(X, P, np.zeros((1, 2)), H, R, detection=1.0, density=0.1)

@@ -3,11 +3,23 @@
 Estimation of Automotive Target Trajectories by Kalman Filtering, Buletinul Stiintific al
 Universitatii Politehnica din Timisoara, Seria Electronica si Telecomunicatii, 58(72).
 
-Functions of the same name in several modules are reached through the module: `chain`, `crossing`,
-`lag`, `maneuvers`, `polar`, `regions`, `tracking`, `two_tones`, `waveforms`.
+Functions of the same name in several modules are reached through the module: `chain`,
+`chain_study`, `crossing`, `lag`, `maneuvers`, `polar`, `regions`, `tracking`,
+`two_tones`, `waveforms`.
 """
 
-from . import chain, crossing, lag, maneuvers, polar, regions, tracking, two_tones, waveforms
+from . import (
+    chain,
+    chain_study,
+    crossing,
+    lag,
+    maneuvers,
+    polar,
+    regions,
+    tracking,
+    two_tones,
+    waveforms,
+)
 from .published import KMH, Path2D, Settings, hard_turn, paths, settings
 
 __all__ = [
@@ -15,6 +27,7 @@ __all__ = [
     "Path2D",
     "Settings",
     "chain",
+    "chain_study",
     "crossing",
     "hard_turn",
     "lag",

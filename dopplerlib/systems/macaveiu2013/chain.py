@@ -45,7 +45,7 @@ class Scan:
     source: np.ndarray
 
 
-def simulate(truth, *, rng):
+def simulate(truth, *, rng, points=POINTS):
     """Return scans of a target with several reflection points among things that stand still.
 
     Parameters
@@ -54,6 +54,8 @@ def simulate(truth, *, rng):
         True states of the middle of the target.
     rng : numpy.random.Generator
         Source of all randomness.
+    points : int
+        Number of the reflection points. A target with one is at its middle: a pedestrian.
 
     Returns
     -------
@@ -62,21 +64,18 @@ def simulate(truth, *, rng):
     Raises
     ------
     ValueError
-        If `rng` is not a generator.
+        If `rng` is not a generator, or `points` is not a positive whole number.
     """
     _checks.generator("rng", rng)
+    points = _checks.whole_number("points", points)
     deviation = np.sqrt(np.diag(polar.noise()))
     place = np.zeros((OBJECTS, 4))
     place[:, 0], place[:, 2] = rng.uniform(-15, 15, OBJECTS), rng.uniform(4, 60, OBJECTS)
     still = polar_radar_h(place)
-    heading = truth[:, 1::2] / np.linalg.norm(truth[:, 1::2], axis=1, keepdims=True)
-    along = np.linspace(-LENGTH / 2, LENGTH / 2, POINTS)
-    points = np.repeat(truth[:, None], POINTS, axis=1)
-    points[..., ::2] += along[:, None] * heading[:, None, :]
-    moving = polar_radar_h(points)
+    moving = polar_radar_h(reflection_points(truth, points))
     scans = []
     for seen in moving:
-        target = seen[rng.random(POINTS) < DETECTED]
+        target = seen[rng.random(points) < DETECTED]
         clutter = still[rng.random(OBJECTS) < OBJECT_DETECTED]
         count = rng.poisson(FALSE_ALARMS)
         false = rng.uniform([2, -0.8, -5], [60, 0.8, 5], size=(count, 3))
@@ -86,6 +85,28 @@ def simulate(truth, *, rng):
         source = np.repeat([TARGET, CLUTTER, FALSE], parts)
         scans.append(Scan(np.concatenate([z, false]), source))
     return scans
+
+
+def reflection_points(truth, points=POINTS):
+    """Return the states of the points of the target that reflect.
+
+    Parameters
+    ----------
+    truth : ndarray, shape (K, 4)
+        True states of its middle.
+    points : int
+        Their number.
+
+    Returns
+    -------
+    ndarray, shape (K, points, 4)
+        In a row of `LENGTH` along the heading; all have the velocity of the middle.
+    """
+    heading = truth[:, 1::2] / np.linalg.norm(truth[:, 1::2], axis=1, keepdims=True)
+    along = np.linspace(-LENGTH / 2, LENGTH / 2, points) if points > 1 else np.zeros(1)
+    states = np.repeat(truth[:, None], points, axis=1)
+    states[..., ::2] += along[:, None] * heading[:, None, :]
+    return states
 
 
 def moves(z):
@@ -102,6 +123,26 @@ def moves(z):
         False for clutter: whatever has a range rate below that of one resolution cell.
     """
     return np.abs(z[..., 2]) >= polar.sensor()["v_min"]
+
+
+def after_rule(scans, rule="always"):
+    """Return the scans with the detections that are made into objects.
+
+    Parameters
+    ----------
+    scans : sequence of Scan
+        From `simulate`.
+    rule : {"always", "new tracks only", "never"}
+        See `run`.
+
+    Returns
+    -------
+    list of Scan
+        Without what stands still if the rule is for all detections; else as they are.
+    """
+    if rule != "always":
+        return list(scans)
+    return [Scan(scan.z[moves(scan.z)], scan.source[moves(scan.z)]) for scan in scans]
 
 
 def objects(z):
@@ -125,16 +166,17 @@ def objects(z):
     azimuth and range rate says what belongs to it.
     """
     member = np.full(len(z), -1)
+    near = fixed_box_gate(z[:, None] - z, BOX)
     means = []
     for i in np.argsort(z[:, 0]):
         if member[i] < 0:
-            inside = (member < 0) & fixed_box_gate(z - z[i], BOX)
+            inside = (member < 0) & near[i]
             member[inside] = len(means)
             means.append(z[inside].mean(axis=0))
     return np.array(means).reshape(-1, 3), member
 
 
-def run(scans, rule="always", assign=greedy_assign):
+def run(scans, rule="always", assign=greedy_assign, manager=MANAGER):
     """Track through the whole scheme.
 
     Parameters
@@ -146,6 +188,8 @@ def run(scans, rule="always", assign=greedy_assign):
         confirmed; or nowhere.
     assign : callable
         See `track_scans`. The default is nearest neighbor.
+    manager : TrackManager
+        When a track is confirmed, and when deleted.
 
     Returns
     -------
@@ -164,16 +208,15 @@ def run(scans, rule="always", assign=greedy_assign):
     """
     _checks.one_of("rule", rule, ("always", "new tracks only", "never"))
     s = settings()
-    kept = [scan.z[moves(scan.z)] if rule == "always" else scan.z for scan in scans]
     return track_scans(
-        [objects(z)[0] for z in kept],
+        [objects(scan.z)[0] for scan in after_rule(scans, rule)],
         ncv_transition(s.T),
         s.with_(w=0.03).E_x,  # agile enough for Figs 10 and 11
         polar_radar_h,
         polar_radar_jacobian,
         OBJECT_NOISE,
         polar.start,
-        MANAGER,
+        manager,
         assign=assign,
         wrap=(1,),
         new=moves if rule == "new tracks only" else None,

@@ -105,8 +105,8 @@ def follow(truth, rule, runs, *, rng, velocity=True, s=None):
         S = np.kron(np.eye(2), s.E_z[:2, :2] @ np.linalg.inv(np.eye(2) - gains[k]))
         nu = z[:, None, :, k] - state[:, :, None]  # (runs, track, detection, 4)
         part = slice(None) if velocity else slice(0, None, 2)
-        weight = np.linalg.inv(S[part, part])
-        cost = np.einsum("...i,ij,...j", nu[..., part], weight, nu[..., part])
+        weighted = nu[..., part] @ np.linalg.inv(S[part, part])
+        cost = np.sum(weighted * nu[..., part], axis=-1)
         taken = np.take_along_axis(nu, _choice(cost, rule)[..., None, None], axis=2)[:, :, 0]
         state = state + taken @ np.kron(np.eye(2), gains[k]).T
         x[:, :, k] = state

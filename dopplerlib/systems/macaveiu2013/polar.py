@@ -3,8 +3,7 @@
 import numpy as np
 
 from ... import _checks
-from ...estimation.extended_update import ekf_update
-from ...estimation.linear_kalman import kf_update
+from ...estimation import extended_update, linear_kalman
 from ...estimation.track import Track
 from ...model.kinematics import ncv_transition
 from ...model.polar_radar import polar_position, polar_radar_h, polar_radar_jacobian
@@ -102,7 +101,7 @@ def ekf(z, s=None):
     R = noise()
 
     def update(x, P, z):
-        return ekf_update(x, P, z, polar_radar_h, polar_radar_jacobian, R, wrap=(1,))
+        return extended_update._update(x, P, z, polar_radar_h, polar_radar_jacobian, R, wrap=(1,))
 
     return _track(z, s, start(z[:, 0]), update)
 
@@ -138,12 +137,13 @@ def naive(z, s=None):
         _, E_z = start(seen)
         # Whoever takes the vector for the velocity takes it to be as good across as along.
         E_z[..., 1::2, 1::2] = radar["sigma_rate"] ** 2 * np.eye(2)
-        return kf_update(x, P, cartesian, np.eye(4), E_z)
+        return linear_kalman._update(x, P, cartesian, np.eye(4), E_z)
 
     return _track(np.concatenate([full, z], axis=-1), s, start(z[:, 0]), update)
 
 
 def _track(z, s, begin, update):
+    """Filter with an update that does not check its arguments: they are ours."""
     F, Q = ncv_transition(s.T), s.E_x
     x, P = begin
     steps = [(x, P, np.full(len(x), np.nan))]

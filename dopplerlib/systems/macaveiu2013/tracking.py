@@ -156,15 +156,37 @@ def filtered(z, s=None):
     ndarray, shape (..., K, 4)
     """
     s = settings() if s is None else s
-    gains, F = gain_sequence(s), ncv_transition(s.T, dim=1)
-    z = z.reshape(*z.shape[:-1], 2, 2)  # (..., K, axis, position and velocity)
+    # Time first and the axes last, so that a step works on contiguous memory.
+    z = z.reshape(*z.shape[:-1], 2, 2)
+    z = np.ascontiguousarray(np.moveaxis(z, (-3, -1), (0, 1)))  # (K, 2, ..., 2)
     x = np.empty_like(z)
-    x[..., 0, :, :] = state = z[..., 0, :, :]
-    for k in range(1, z.shape[-3]):
-        state = state @ F.T
-        state = state + (z[..., k, :, :] - state) @ gains[k].T
-        x[..., k, :, :] = state
-    return x.reshape(*x.shape[:-2], 4)
+    x[0] = p, v = z[0]
+    for k, K in enumerate(gain_sequence(s)[1:], start=1):
+        x[k] = p, v = step(p, v, z[k], K, s.T)
+    return np.moveaxis(x, (0, 1), (-3, -1)).reshape(*x.shape[2:-1], len(x), 4)
+
+
+def step(p, v, z, K, T):
+    """Return positions and velocities after one step of the filter: Eq 6 with H = I, on any axis.
+
+    Parameters
+    ----------
+    p, v : ndarray, shape (...)
+        Estimated positions and velocities.
+    z : tuple of two ndarray, shape (...)
+        Measured ones, one T later.
+    K : ndarray, shape (2, 2)
+        Gain.
+    T : float
+        Sampling interval in s.
+
+    Returns
+    -------
+    p, v : ndarray, shape (...)
+    """
+    p = p + T * v
+    nu_p, nu_v = z[0] - p, z[1] - v
+    return p + (K[0, 0] * nu_p + K[0, 1] * nu_v), v + (K[1, 0] * nu_p + K[1, 1] * nu_v)
 
 
 def gain_sequence(s=None):
@@ -179,14 +201,22 @@ def gain_sequence(s=None):
     -------
     ndarray, shape (K, 2, 2)
         They do not depend on the data. The first belongs to the start, and is the unit matrix.
+
+    Notes
+    -----
+    Eq 6 for a 2 x 2 matrix written out, with K = P (P + E_z)^{-1}: thousands of calls make a map.
     """
     s = settings() if s is None else s
-    F, E_x, E_z = ncv_transition(s.T, dim=1), s.E_x[:2, :2], s.E_z[:2, :2]
-    P, gains = E_z, [np.eye(2)]
+    R, q = (s.sigma_p**2, s.sigma_v**2), s.w**2
+    pp, pv, vv = R[0], 0.0, R[1]  # P: the entries of a symmetric matrix
+    gains = [[[1.0, 0.0], [0.0, 1.0]]]
     for _ in range(1, s.samples):
-        predicted = F @ P @ F.T + E_x
-        K = np.linalg.solve(predicted + E_z, predicted).T
-        A = np.eye(2) - K
-        P = A @ predicted @ A.T + K @ E_z @ K.T
+        pp, pv, vv = pp + 2 * s.T * pv + s.T**2 * vv, pv + s.T * vv, vv + q
+        determinant = (pp + R[0]) * (vv + R[1]) - pv**2
+        K = [
+            [(pp * (vv + R[1]) - pv**2) / determinant, pv * R[0] / determinant],
+            [pv * R[1] / determinant, (vv * (pp + R[0]) - pv**2) / determinant],
+        ]
+        pp, pv, vv = K[0][0] * R[0], K[0][1] * R[1], K[1][1] * R[1]  # P = K E_z, as H = I
         gains.append(K)
-    return np.stack(gains)
+    return np.array(gains)

@@ -34,6 +34,7 @@ from .published import (
     signal_chain,
     table2,
 )
+from .race import RACE, RACE_LEVELS, Race, race_cell, race_windows, saved_race
 from .simulated_iq import SIMULATED, read_simulated_iq, simulated_recording, write_simulated_iq
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
 from .sweep_readings import (
@@ -53,6 +54,8 @@ __all__ = [
     "FAULTS",
     "NOISE_LEVELS",
     "ORIENTATIONS",
+    "RACE",
+    "RACE_LEVELS",
     "SCORED_LEVELS",
     "SIMULATED",
     "SWEEP_READINGS",
@@ -67,6 +70,7 @@ __all__ = [
     "PublishedFigure3",
     "PublishedFigure4",
     "PublishedFigure6",
+    "Race",
     "Reading",
     "Starts",
     "SweepReading",
@@ -98,12 +102,15 @@ __all__ = [
     "published_figure4",
     "published_figure6",
     "quoted",
+    "race_cell",
+    "race_windows",
     "range_claims",
     "read_simulated_iq",
     "received",
     "ruled_out",
     "samples_needed",
     "saved_figure4",
+    "saved_race",
     "scenario",
     "shares_above",
     "signal_chain",

@@ -6,6 +6,7 @@ import numpy as np
 
 from ... import _checks
 from ...estimation.linear_kalman import kf
+from ...evaluation.intervals import Estimate, mean_interval
 
 
 @dataclass(frozen=True)
@@ -14,17 +15,17 @@ class WalkFilter:
 
     Attributes
     ----------
-    nis : float
+    nis : Estimate
         Mean of the normalized innovation squared; 1 if the filter is consistent.
-    nees : float
+    nees : Estimate
         Mean of the normalized estimation error squared; 1 if the filter is consistent.
-    autocorrelation : ndarray, shape (lags + 1,)
+    autocorrelation : list of Estimate, length lags + 1
         Of the innovations, from lag 0 on; 0 beyond lag 0 if the filter is optimal.
     """
 
-    nis: float
-    nees: float
-    autocorrelation: np.ndarray
+    nis: Estimate
+    nees: Estimate
+    autocorrelation: list
 
 
 def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
@@ -33,7 +34,7 @@ def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
     Parameters
     ----------
     noise : array_like, shape (runs, K)
-        Errors of the measurements.
+        Errors of the measurements; at least two runs.
     q : float
         Variance of a step of the walk over that of `noise`. The filter knows it.
     r : float
@@ -56,7 +57,8 @@ def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
 
     Notes
     -----
-    Mittermaier et al. (2016), Eq 8.
+    Mittermaier et al. (2016), Eq 8. A run gives one number to each interval, as only runs are
+    independent of each other.
     """
     noise = _checks.finite("noise", noise, (None, None))
     q, r = _checks.positive_number("q", q), _checks.positive_number("r", r)
@@ -75,13 +77,14 @@ def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
     k = slice(settle, None)
     innovation = track.innovation[..., k, 0]
     power = np.mean(innovation**2)
+    K = innovation.shape[-1]
     products = [
-        np.mean(innovation[..., lag:] * innovation[..., : innovation.shape[-1] - lag])
+        np.mean(innovation[..., lag:] * innovation[..., : K - lag], axis=-1)
         for lag in range(lags + 1)
     ]
     error = track.x[..., k, 0] - walk[..., k]
     return WalkFilter(
-        nis=float(np.mean(track.nis[..., k])),
-        nees=float(np.mean(error**2 / track.P[..., k, 0, 0])),
-        autocorrelation=np.array(products) / power,
+        nis=mean_interval(np.mean(track.nis[..., k], axis=-1)),
+        nees=mean_interval(np.mean(error**2 / track.P[..., k, 0, 0], axis=-1)),
+        autocorrelation=[mean_interval(p / power) for p in products],
     )

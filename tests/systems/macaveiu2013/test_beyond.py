@@ -160,6 +160,20 @@ def test_choices_for_two_are_those_of_the_general_assignments(rule, assign):
     assert [list(assign(one, 100.0)) for one in cost] == chosen.tolist()
 
 
+def test_the_hungarian_rule_keeps_both_targets_and_swaps_them_more_often_than_greedy():
+    """200 runs each. Lost: 0.81 (0.03) against 0, which is certain. Swapped: 0.58 against 0.09, a
+    difference of 0.49 (0.04). The bounds are 7 deviations away."""
+
+    def share(degrees, rule, which, velocity):
+        truth, rng = crossing.paths(np.deg2rad(degrees)), np.random.default_rng(12)
+        return getattr(crossing.follow(truth, rule, 200, rng=rng, velocity=velocity), which).mean()
+
+    assert share(11, "Hungarian", "lost", True) == 0
+    assert share(11, "each its nearest", "lost", True) > 0.6
+    both = [share(20, rule, "swapped", False) for rule in ("Hungarian", "greedy")]
+    assert both[0] > both[1] + 0.2
+
+
 def test_crossing_paths_meet_half_way_at_their_angle():
     truth = crossing.paths(0.5)
     half = truth[:, [249, 250]].mean(axis=1)

@@ -23,6 +23,13 @@ def test_a_pulse_shows_the_range_within_its_length_and_the_doppler_over_pulses()
     np.testing.assert_allclose(v, -5, rtol=1e-6)
 
 
+def test_a_pulse_is_missed_at_the_sampling_rate_that_rapid_chirps_need():
+    """3.4 MHz: samples are 44 m apart, and a pulse of a meter falls between them."""
+    rate = 256 * 512 / S.T
+    _, signal = w.pulse_train(ONE, rate=rate)
+    assert rate < S.bandwidth / 40 and np.abs(signal).max() == 0
+
+
 @pytest.mark.parametrize(("slope", "begin"), [(SLOPE, 0.0), (-SLOPE, T1)])
 def test_a_chirp_gives_one_equation_for_two_unknowns(slope, begin):
     signal = w.chirp_beat(ONE, slope, T1, 1024, begin)

@@ -1,0 +1,70 @@
+"""Make data/macaveiu2013/ourchain.csv and ourdetections.csv: the scheme of Fig 6 on many records.
+
+Every record is processed in every way, so that ways are compared on the same noise. The study
+takes several minutes; interrupted, it goes on where it stopped. Progress goes to standard error.
+The files do not depend on the number of processors.
+"""
+
+import json
+import math
+import multiprocessing
+from dataclasses import astuple, fields
+from pathlib import Path
+
+from dopplerlib._progress import progress_bar
+from dopplerlib.systems.macaveiu2013 import chain_study, paths
+from tools.files import write
+
+DATA = Path(__file__).resolve().parent.parent / "data" / "macaveiu2013"
+TOGETHER = 5  # runs between two saves
+
+
+def lines(job):
+    """Return the lines of both files for some runs of one path."""
+    figure, first = job
+    truth = paths()[figure].truth
+    found, counted = [], []
+    for run in range(first, first + TOGETHER):
+        for number, variant in enumerate(chain_study.VARIANTS, start=1):
+            if variant not in chain_study.variants(figure):
+                continue
+            scans = chain_study.record(figure, run, variant)
+            values = (text(v) for v in astuple(chain_study.outcome(scans, truth, variant)))
+            found.append(",".join([str(figure), str(number), str(run), *values]))
+        values = map(str, astuple(chain_study.counts(chain_study.record(figure, run))))
+        counted.append(",".join([str(figure), str(run), *values]))
+    return found, counted
+
+
+def study(folder, figures, runs):
+    """Write both files to a folder."""
+    part = folder / "ourchain.part"
+    done = json.loads(part.read_text(encoding="utf-8")) if part.exists() else []
+    jobs = [(figure, first) for first in range(0, runs, TOGETHER) for figure in figures]
+    with multiprocessing.Pool() as pool:
+        results = pool.imap(lines, jobs[len(done) :])
+        for _ in progress_bar(jobs[len(done) :], "records"):
+            done.append(next(results))
+            write(part, json.dumps(done))
+    done = [lines_of_job for _, lines_of_job in sorted(zip(jobs, done, strict=True))]
+    heads = (
+        ["figure", "variant", "run", *(field.name for field in fields(chain_study.Outcome))],
+        ["figure", "run", *(field.name for field in fields(chain_study.Counts))],
+    )
+    for name, head, parts in zip(
+        ("ourchain.csv", "ourdetections.csv"), heads, zip(*done, strict=True), strict=True
+    ):
+        rows = [line for part_of_it in parts for line in part_of_it]
+        write(folder / name, "\n".join([",".join(head), *rows]) + "\n")
+    part.unlink()
+
+
+def text(value):
+    """Return a number as it is written: counts whole, errors to 0.1 mm."""
+    if isinstance(value, int):
+        return str(value)
+    return "NaN" if math.isnan(value) else f"{value:.4f}"
+
+
+if __name__ == "__main__":
+    study(DATA, tuple(paths()), chain_study.RUNS)
