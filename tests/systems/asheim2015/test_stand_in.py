@@ -183,7 +183,7 @@ def test_a_track_is_on_the_target_or_false():
     truth = np.full(4, 2.0)
     assert thesis.on_track(tracks, truth, [1, 2, 3], 0.5)
     assert not thesis.on_track(tracks, truth + 1, [1, 2, 3], 0.5)
-    assert not thesis.on_track(tracks, truth + [0, 0, 0, 1], [1, 2, 3], 0.5)
+    assert not thesis.on_track(tracks, truth + np.eye(4)[3], [1, 2, 3], 0.5)
     assert not thesis.on_track(one_radar_tracks(*[[[2.0, 0.0]]] * 3), truth, [2, 3], 0.5)
     assert thesis.false_tracks(tracks, truth, 0.5) == 1
     assert thesis.false_tracks(tracks, truth + 1, 0.5) == 2
