@@ -85,14 +85,14 @@ def budget(rows, moments):
 
 
 def wrong_time(time, nis, nees, labels):
-    """Draw averages of NIS and of NEES over time, for right and wrong times.
+    """Draw averages of NIS and of NEES over time, with their intervals, for right and wrong times.
 
     Parameters
     ----------
     time : ndarray, shape (K,)
         Time in s.
-    nis, nees : sequence of ndarray, shape (K,)
-        Averages over runs, one for each label.
+    nis, nees : sequence of list of Estimate
+        Averages over runs, one list of K for each label.
     labels : sequence of str
         What the times are.
 
@@ -104,8 +104,12 @@ def wrong_time(time, nis, nees, labels):
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
         for ax, values, name in ((left, nis, "NIS"), (right, nees, "NEES")):
-            for label, value, (color, ls, lw) in zip(labels, values, styles, strict=False):
-                ax.plot(time, value, color=color, ls=ls, lw=lw, label=label)
+            for i, (label, each) in enumerate(zip(labels, values, strict=True)):
+                color, ls, lw = styles[i]
+                ax.plot(time, [e.value for e in each], color=color, ls=ls, lw=lw, label=label)
+                if each not in values[:i]:  # equal bands on top of each other would mix colors
+                    ends = [e.low for e in each], [e.high for e in each]
+                    ax.fill_between(time, *ends, color=color, alpha=0.2, lw=0)
             ax.axhline(6, color=BOUND, lw=0.9)
             ax.set(xlabel="time in s", ylabel=f"mean {name}")
         left.set_ylim(0, 12)
@@ -162,7 +166,7 @@ def starts(lengths, errors, shares, limit):
         return figure
 
 
-def achievable(levels, medians, bound):
+def achievable(levels, medians, bounds):
     """Draw position errors over the strength of the echo.
 
     Parameters
@@ -171,8 +175,8 @@ def achievable(levels, medians, bound):
         Power of the echo over the noise in 1 Hz, in dB.
     medians : sequence of Estimate
         Median errors in m with their intervals, for each level.
-    bound : sequence of float
-        Medians in m that the bound would allow, for each level.
+    bounds : dict of str to sequence of float
+        Medians in m that each bound would allow, for each level; two bounds at most.
 
     Returns
     -------
@@ -180,7 +184,9 @@ def achievable(levels, medians, bound):
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
-        ax.plot(levels, 1e3 * np.asarray(bound), color=BOUND, ls="--", lw=1.2, label="bound")
+        styles = ((BOUND, "--"), (BOUND, ":"))
+        for (name, bound), (color, ls) in zip(bounds.items(), styles, strict=False):
+            ax.plot(levels, 1e3 * np.asarray(bound), color=color, ls=ls, lw=1.5, label=name)
         for x, m in zip(levels, medians, strict=True):
             ax.plot([x, x], [1e3 * m.low, 1e3 * m.high], color=OURS, lw=1.8)
         values = [1e3 * m.value for m in medians]

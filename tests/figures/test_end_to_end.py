@@ -41,11 +41,14 @@ def test_the_budget_has_a_row_for_each_name_in_millimeters():
     assert [ax.get_title("left") for ax in figure.axes] == ["at 0.5 s", "at 1 s"]
 
 
-def test_wrong_times_are_drawn_in_both_panels():
-    time, one = np.arange(3.0), np.ones(3)
-    left, right = draw.wrong_time(time, [one, 2 * one], [3 * one, 4 * one], ["a", "b"]).axes
-    np.testing.assert_array_equal(labels(left)["b"].get_ydata(), 2 * one)
-    np.testing.assert_array_equal(labels(right)["b"].get_ydata(), 4 * one)
+def test_wrong_times_are_drawn_in_both_panels_with_their_intervals():
+    time, one, two = np.arange(3.0), [Estimate(1, 0.5, 2)] * 3, [Estimate(3, 2, 5)] * 3
+    left, right = draw.wrong_time(time, [one, one], [one, two], ["a", "b"]).axes
+    np.testing.assert_array_equal(labels(left)["b"].get_ydata(), [1, 1, 1])
+    np.testing.assert_array_equal(labels(right)["b"].get_ydata(), [3, 3, 3])
+    assert len(left.collections) == 1 and len(right.collections) == 2
+    heights = right.collections[1].get_paths()[0].vertices[:, 1]
+    assert (heights.min(), heights.max()) == (2, 5)
 
 
 def test_starts_show_the_middle_of_the_errors_and_the_shares():
@@ -56,7 +59,9 @@ def test_starts_show_the_middle_of_the_errors_and_the_shares():
     np.testing.assert_allclose(marked(right), [50, 10])
 
 
-def test_medians_are_drawn_beside_the_bound():
-    ax = draw.achievable([40, 50], [Estimate(0.02, 0.01, 0.03)] * 2, [0.015, 0.005]).axes[0]
-    np.testing.assert_allclose(labels(ax)["bound"].get_ydata(), [15, 5])
+def test_medians_are_drawn_beside_the_bounds():
+    bounds = {"windows": [0.015, 0.005], "samples": [0.002, 0.001]}
+    ax = draw.achievable([40, 50], [Estimate(0.02, 0.01, 0.03)] * 2, bounds).axes[0]
+    np.testing.assert_allclose(labels(ax)["windows"].get_ydata(), [15, 5])
+    np.testing.assert_allclose(labels(ax)["samples"].get_ydata(), [2, 1])
     np.testing.assert_allclose(labels(ax)["from IQ samples"].get_ydata(), [20, 20])

@@ -84,6 +84,30 @@ def test_the_measured_ratio_has_no_bias_in_short_windows_either(estimator, n):
     assert abs(d.snr.mean() - snr) < spread + 0.004 * snr
 
 
+@pytest.mark.parametrize(("estimator", "n"), [(ml_frequency, 5), (ml_frequency_dc, 6)])
+def test_the_measured_ratio_has_no_bias_where_hardly_anything_is_left_to_see_the_noise(
+    estimator, n
+):
+    """At 30 dB. Each unknown too few or too many would change the mean by 4 % or more."""
+    runs, snr = 40000, 1000.0
+    x = tone(np.full(runs, 1.7 / n), 1.0, n, 30.0, rng=np.random.default_rng(11))
+    d = sliding_doppler(x, 1.0, n, n, estimator)
+    spread = norm.isf(FALSE_ALARM / 4) * d.snr.std() / np.sqrt(runs)
+    assert spread < 0.03 * snr
+    assert abs(d.snr.mean() - snr) < spread + 0.004 * snr
+
+
+def test_noise_adds_as_much_to_a_slow_tone_as_the_constant_leaves_of_it_to_see():
+    """1.5 of its variance over the energy of a tone of amplitude 1 less its mean."""
+    n = 40
+    x = tone(np.linspace(0.3, 2, 30) / n, 1.0, n, 20.0, rng=np.random.default_rng(12)) + 2
+    d = sliding_doppler(x, 1.0, n, n, ml_frequency_dc)
+    wave = np.exp(2j * np.pi * d.frequency[0, :, None] * np.arange(n))
+    energy = np.sum(np.abs(wave - wave.mean(axis=-1, keepdims=True)) ** 2, axis=-1)
+    expected = d.amp2 / d.noise_variance * (n - 3.5) / (n - 2.5) - 1.5 / energy
+    np.testing.assert_allclose(d.snr[0], expected[0], rtol=1e-9)
+
+
 @pytest.mark.parametrize("cycles", [0.4, 1.0, 4.3])
 def test_the_deviation_beside_a_constant_is_right_in_the_mean(cycles):
     """A few percent more: of second order in the noise, at 30 dB; most of it at 0.4 cycles."""

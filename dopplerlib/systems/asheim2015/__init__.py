@@ -6,7 +6,7 @@ Tracking a person using UWB pulse Doppler radar, master's thesis, NTNU Trondheim
 from .expected_error import error_area, one_scan_bound
 from .experiments import baseline_sweep, late_radar, refused_scans, usable_ranges
 from .in_the_plane import central_filter, table_3_2
-from .many_detections import managed_tracks, pda_radar
+from .many_detections import false_tracks, managed_tracks, on_track, pda_radar
 from .measures import departure, distance_error, rmse, usable_range, usable_range_of_each
 from .one_radar import RadarTrack, filter_radar
 from .published import (
@@ -45,12 +45,14 @@ __all__ = [
     "deviations",
     "distance_error",
     "error_area",
+    "false_tracks",
     "filter_radar",
     "filter_then_triangulate",
     "late_radar",
     "managed_tracks",
     "maneuver_track",
     "noisy_positions",
+    "on_track",
     "one_scan_bound",
     "over_runs",
     "pda_radar",

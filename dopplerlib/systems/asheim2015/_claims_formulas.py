@@ -6,10 +6,9 @@ from ...estimation.linear_kalman import _predict, _update
 from ...estimation.radial_velocity import radial_velocity_terms
 from ...evaluation.verdicts import Readings
 from ...model.range_rate import range_rate, range_rate_jacobian
-from ...model.ranging_noise import detection_probability
 from .expected_error import error_area, one_scan_bound
 from .in_the_plane import polar_jacobian
-from .published import deviations, quoted, scenario, settings, snr
+from .published import deviations, quoted, resolutions, scenario, settings, snr
 from .scene import maneuver_track, radars, straight_track
 
 
@@ -39,7 +38,10 @@ def settings_and_formulas():
         "process-noise": np.diag(code.Q),
         "wavelength": wavelengths["c / f"],
         "velocity-resolution": Readings(velocities),
-        "range-resolution": n["speed_of_light"] * 10.0 ** q["noise"]["pulse_exponent_printed"] / 2,
+        "range-resolution": resolutions()[0],
+        "range-resolution-formula": n["speed_of_light"]
+        * 10.0 ** q["noise"]["pulse_exponent_printed"]
+        / 2,
         "snr-at-one": float(snr(1.0)),
         "speed": float(np.hypot(*s["tracks"]["velocity"])),
         "straight-end": float(np.hypot(*ends[0])),
@@ -49,13 +51,9 @@ def settings_and_formulas():
         "error-area": corner.max(axis=0),
         "error-area-snr": float(snr(at).mean()),
         "shared-integration": 1 - s["tracks"]["T"] / n["integration"],
-        "detection": float(
-            detection_probability(snr(q["range"]["fused"]), s["detection"]["false_alarm"])
-        ),
         "R2-approaches": float(range_rate(straight_track([0.0]), radars())[0, 1, 1]),
         "R1-distance": _range_at(0, q["departure"]["R1_time"]),
         "R2-distance": _range_at(1, q["departure"]["R2_time"]),
-        "real-range": q["range"]["real_conclusion"],
         "gate-grows": gate_growth(text),
         "directional-cosine": _printed_cosine(),
         "extra-variance": _extra_variance_ratio(),

@@ -85,6 +85,54 @@ def managed_tracks(time, detections, settings, manager=None):
     ]
 
 
+def on_track(tracks, truth, scans, limit):
+    """Return whether one confirmed track follows the target through some scans.
+
+    Parameters
+    ----------
+    tracks : list of dict
+        As `managed_tracks` returns them.
+    truth : array_like, shape (K,)
+        True range at each scan in m.
+    scans : array_like of int
+        The scans, in increasing order.
+    limit : float
+        Largest error of a range in m.
+
+    Returns
+    -------
+    bool
+    """
+    truth, scans = np.asarray(truth), np.asarray(scans)
+    for track in tracks:
+        there = np.isin(track["scan"], scans)
+        off = np.abs(track["x"][there, 0] - truth[track["scan"][there]])
+        if there.sum() == len(scans) and (off < limit).all():
+            return True
+    return False
+
+
+def false_tracks(tracks, truth, limit):
+    """Return how many confirmed tracks follow something else than the target.
+
+    Parameters
+    ----------
+    tracks : list of dict
+        As `managed_tracks` returns them.
+    truth : array_like, shape (K,)
+        True range at each scan in m.
+    limit : float
+        A track is false if the median error of its range is larger than this, in m.
+
+    Returns
+    -------
+    int
+    """
+    truth = np.asarray(truth)
+    off = [np.median(np.abs(track["x"][:, 0] - truth[track["scan"]])) for track in tracks]
+    return int(np.sum(np.array(off) > limit))
+
+
 def pda_radar(detections, settings, *, x0):
     """Run probabilistic data association in place of the nearest neighbor.
 

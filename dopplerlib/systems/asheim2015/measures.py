@@ -94,6 +94,11 @@ def usable_range(error, time, distance, limit=1.0, after=5.0, window=1.0):
     float
         The distance at which the moving average of the root mean square error over runs first is
         above the limit; infinite if it never is.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two scans.
     """
     total, count = (part.sum(axis=0) for part in _squares(error))
     return float(_first_above(total, count, time, distance, limit, after, window))
@@ -128,6 +133,8 @@ def _squares(error):
 def _first_above(total, count, time, distance, limit=1.0, after=5.0, window=1.0):
     """Return the distance at which root mean squares (..., K) are first above the limit."""
     time, distance = np.asarray(time), np.asarray(distance)
+    if len(time) < 2:
+        raise ValueError(f"time must have two scans or more, got {len(time)}")
     # A scan without any estimate counts as unusable.
     curve = np.sqrt(np.where(count > 0, total / np.maximum(count, 1), np.inf))
     scans = max(1, round(window / (time[1] - time[0])))

@@ -23,10 +23,11 @@ class RadarTrack:
     chosen : ndarray, shape (..., K, 2)
         The detection that was used; NaN where none was.
     updated : ndarray of bool, shape (..., K)
-        Whether a detection was used. The first scan starts the track and counts as used.
+        Whether a detection was used. One that starts the track counts as used; a start without
+        one does not.
     nis : ndarray, shape (..., K)
-        Normalized innovation squared of the detection nearest to the prediction, inside the gate
-        or not; NaN where there was no detection, and at the first scan.
+        Least normalized innovation squared of the detections, inside the gate or not; NaN where
+        there was no detection, and at the first scan.
     """
 
     x: np.ndarray
@@ -49,7 +50,8 @@ def filter_radar(
     settings : Settings
         How the filter is set, see `settings`.
     doppler : bool
-        Whether the range rate updates the filter. It is gated in any case, as in the code.
+        Whether the range rate updates the filter. The box looks at it in any case, as in the
+        code; a gate on NIS only if it updates.
     association : {"gate-first", "nearest-first"}
         "gate-first": the nearest of the detections inside the gate, by NIS, as the text says;
         "nearest-first": the nearest in range alone, dropped if it is outside, as the code does.
@@ -57,7 +59,7 @@ def filter_radar(
         Whether the first detection starts the filter and then updates it once more, as the code
         does. If not, it only starts it.
     x0 : array_like, shape (2,) or (..., 2), optional
-        Start where the first scan is empty.
+        Start where the first scan is empty. No detection counts as used there.
 
     Returns
     -------
@@ -66,7 +68,8 @@ def filter_radar(
     Raises
     ------
     ValueError
-        If a shape or a name does not fit, or a first scan is empty and no `x0` is given.
+        If a shape or a name does not fit, there is no scan or no room for a detection, or a first
+        scan is empty and no `x0` is given.
 
     Notes
     -----
@@ -76,6 +79,8 @@ def filter_radar(
     """
     z = _checks.real("detections", detections)
     _checks.check_shape("detections", z, (None, None, 2))
+    if not z.shape[-3] or not z.shape[-2]:
+        raise ValueError(f"detections must have scans and detections in each, got shape {z.shape}")
     _checks.instance("settings", settings, Settings)
     _checks.one_of("association", association, ("gate-first", "nearest-first"))
     batch, K = z.shape[:-3], z.shape[-3]
@@ -85,7 +90,9 @@ def filter_radar(
     steps = []
     for k in range(K):
         if k == 0 and not reuse_first:
-            steps.append((x, P, x, np.ones(batch, bool), np.full(batch, np.nan)))
+            seen = np.isfinite(z[..., 0, :, :]).all(axis=-1).any(axis=-1)
+            chosen = np.where(seen[..., None], x, np.nan)
+            steps.append((x, P, chosen, seen, np.full(batch, np.nan)))
             continue
         x, P = _predicted(x, P, settings)
         R = settings.R(x[..., 0])

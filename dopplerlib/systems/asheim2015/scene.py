@@ -148,10 +148,17 @@ def scan_times(T=None, duration=None):
     Returns
     -------
     ndarray, shape (K,)
+
+    Raises
+    ------
+    ValueError
+        If the record is shorter than one interval.
     """
     s = scenario()["tracks"]
     T = s["T"] if T is None else _checks.positive_number("T", T)
     duration = s["duration"] if duration is None else _checks.positive_number("duration", duration)
+    if duration < T:
+        raise ValueError(f"duration must be at least the interval of {T} s, got {duration}")
     return np.arange(round(duration / T) + 1) * T
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...evaluation.intervals import mean_interval, share_interval
+from ...evaluation.intervals import Estimate, mean_interval, share_interval
 from ...evaluation.verdicts import Readings
 from ...signal.frequency import ml_frequency
 from ...signal.interpolation import peak_bin
@@ -46,6 +46,7 @@ def signal_evidence(rng):
         "signal-bound": Readings(
             {name: mean_interval((e / bound) ** 2) for name, (e, bound) in errors.items()}
         ),
+        "signal-depends": _dependence(rng.spawn(3)),
         "signal-normal": share_interval(np.abs(normal[0]) < 1.96 * normal[1]),
         "signal-variance": Readings(
             {
@@ -70,7 +71,25 @@ def signal_evidence(rng):
     }
 
 
-def _errors(estimator, n, rng):
+def _dependence(children):
+    """Return what twice the signal-to-noise ratio and twice the length leave of the variance."""
+    settings = ((100, 10.0), (100, 10.0 + 10 * np.log10(2)), (200, 10.0))
+    usual, stronger, longer = (
+        _errors(ml_frequency, n, child, level) ** 2
+        for (n, level), child in zip(settings, children, strict=True)
+    )
+    return Readings({"ratio": _ratio(stronger, usual), "length": _ratio(longer, usual)})
+
+
+def _ratio(some, others):
+    """Return the ratio of two means, with an interval by the logarithms of both."""
+    one, two = mean_interval(some), mean_interval(others)
+    spread = np.hypot((one.high - one.value) / one.value, (two.high - two.value) / two.value)
+    ratio = one.value / two.value
+    return Estimate(ratio, float(ratio * np.exp(-spread)), float(ratio * np.exp(spread)))
+
+
+def _errors(estimator, n, rng, snr_db=_SNR_DB):
     """Return errors in Hz, of tones at random places of the middle half of the spectrum."""
     f = rng.uniform(-_FS / 4, _FS / 4, _RUNS)
-    return estimator(tone(f, _FS, n, _SNR_DB, rng=rng), _FS) - f
+    return estimator(tone(f, _FS, n, snr_db, rng=rng), _FS) - f

@@ -22,35 +22,70 @@ def quarters(lower, upper):
     return boxes
 
 
-def hypotheses(z, std, iq, T, apart, boxes):
-    """Return states (runs, H, 6), their chi-squares (runs, H), and one deviation for each run.
+def hypotheses(z, std, array, T, apart, boxes):
+    """Return states (runs, H, 6), chi-squares (runs, H), and deviations (runs, K, N) of the start.
 
     All shifts of a record get the same weight, so the search does not depend on how large it is.
+    A deviation is infinite where a shift is missing.
     """
     early = slice((z.shape[1] - 1) % apart, None, apart)
-    variance = np.mean(std[:, early] ** 2, axis=(1, 2))
-    found = [ml_start(z[:, early], iq.array, 1.0, apart * T, box, at="last") for box in boxes]
+    z, missing = z[:, early], np.isinf(std[:, early])
+    total = np.sum(np.where(missing, 0.0, std[:, early]) ** 2, axis=(1, 2))
+    variance = total / np.maximum(np.sum(~missing, axis=(1, 2)), 1)
+    found = [ml_start(z, array, 1.0, apart * T, box, at="last") for box in boxes]
     states, costs = [s.x for s in found], [s.cost for s in found]
     if len(boxes) == 1:
         states, costs = [*states, found[0].second_x], [*costs, found[0].second_cost]
-    return np.stack(states, axis=1), np.stack(costs, axis=1) / variance[:, None], variance**0.5
+    weights = np.where(missing, np.inf, np.sqrt(variance)[:, None, None])
+    return np.stack(states, axis=1), np.stack(costs, axis=1) / variance[:, None], weights
 
 
 def filters(z, std, weights, array, T, used, apart, sigma_p, states, costs):
-    """Return x, P, nis and score of the filters that start from the hypotheses of one run."""
+    """Return x, P, nis, memory and score of the filters from the hypotheses of one run."""
     shape = (len(states), 1 + len(z) - used)
     x, P = np.full((*shape, 6), np.nan), np.full((*shape, 6, 6), np.nan)
     nis, score = np.full((shape[0], shape[1] - 1), np.nan), np.full(shape, np.inf)
-    for i in np.flatnonzero(costs < np.nanmin(costs) + CARRIED):
+    innovations = {}
+    costs = np.where(np.isnan(costs), np.inf, costs)
+    for i in np.flatnonzero(costs < costs.min() + CARRIED):
         covariance = start_covariance(states[i], array, weights, apart * T)
         if covariance is None:
             continue
         x[i, 0], P[i, 0], score[i] = states[i], covariance, costs[i]
         if shape[1] > 1:
-            t = ekf(z[used:], array, states[i], covariance, T, sigma_p, std[used:], workers=1)
+            # The filter wants a number for what is missing, and does not use it.
+            sigma = np.where(np.isinf(std[used:]), 1.0, std[used:])
+            t = ekf(z[used:], array, states[i], covariance, T, sigma_p, sigma, workers=1)
             x[i, 1:], P[i, 1:], nis[i] = t.x, t.P, t.nis
-            score[i, 1:] += np.cumsum(t.nis + np.linalg.slogdet(t.S)[1])
-    return x, P, nis, score
+            factor = _factor(t.S, np.isnan(t.innovation))
+            score[i, 1:] += np.cumsum(_misfit(t.nis, factor))
+            innovations[i] = t.innovation, factor
+    winner = innovations.get(np.argmin(score[:, -1]))
+    return x, P, nis, np.nan if winner is None else _memory(*winner), score
+
+
+def _factor(S, missing):
+    """Return Cholesky factors of innovation covariances, of size 1 where a sensor is missing."""
+    if missing.any():
+        apart = missing[:, :, None] | missing[:, None]
+        S = np.where(apart, np.eye(S.shape[-1]), S)
+    return np.linalg.cholesky(S)
+
+
+def _misfit(nis, factor):
+    """Return minus twice the log likelihood of each innovation, up to a constant."""
+    diagonal = np.diagonal(factor, axis1=-2, axis2=-1)
+    return np.nan_to_num(nis) + 2 * np.log(diagonal).sum(axis=-1)
+
+
+def _memory(innovation, factor):
+    """Return the autocorrelation of normalized innovations at one sample, over all modules."""
+    normal = np.empty_like(innovation)
+    for i in range(innovation.shape[-1]):  # forward substitution, for all samples at once
+        known = np.sum(factor[:, i, :i] * normal[:, :i], axis=-1)
+        normal[:, i] = (innovation[:, i] - known) / factor[:, i, i]
+    power = np.sum(normal**2)
+    return np.sum(normal[1:] * normal[:-1]) / power if power > 0 else np.nan
 
 
 def start_covariance(x, array, std, T):
@@ -60,6 +95,7 @@ def start_covariance(x, array, std, T):
     back = -T * np.arange(len(std))[::-1]
     F = np.tile(np.eye(6), (len(std), 1, 1))
     F[:, :3, 3:] = back[:, None, None] * np.eye(3)
+    # An infinite deviation leaves nothing of the slope.
     slopes = doppler_jacobian(np.einsum("kij,j->ki", F, x), array) @ F / std[..., None]
     slopes = slopes.reshape(-1, 6)
     scale = np.linalg.norm(slopes, axis=0)

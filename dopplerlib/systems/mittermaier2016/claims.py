@@ -1,6 +1,7 @@
 """Evidence on every claim of the paper, for the verdicts."""
 
 from ... import _checks
+from ._claims_chain import chain_evidence
 from ._claims_printed import printed_evidence
 from ._claims_signal import signal_evidence
 from ._claims_start import start_evidence
@@ -26,10 +27,11 @@ def evidence(*, rng):
         If `rng` is not a generator.
     """
     _checks.generator("rng", rng)
-    start, tracking, signal = rng.spawn(3)
+    start, tracking, signal, chain = rng.spawn(4)
     return (
         printed_evidence()
         | signal_evidence(signal)
         | start_evidence(start)
         | tracking_evidence(tracking)
+        | chain_evidence(chain)
     )

@@ -1,52 +1,23 @@
 """The whole chain on the track of Table 2: from IQ samples to a position, every stage a switch."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from ... import _checks
 from ...model.motion import constant_velocity
-from ...model.radar_array import RadarArray
-from ...signal.front_end import lowpass, lowpass_decimate
-from ...signal.impairments import add_dc, add_iq_imbalance, correct_iq_imbalance, remove_mean
+from ...signal.frequency import ml_frequency
+from ...signal.impairments import correct_iq_imbalance, remove_mean
 from ...signal.sliding import sliding_doppler
-from ...signal.synthesis import iq_from_geometry
 from ._hypotheses import filters, hypotheses, quarters
 from .published import scenario, signal_chain
+from .received_iq import Baseband
 from .start import start_box
 
-# The module's faults, in amplitudes of the echo, dB and degrees. Ours: the paper states none.
-FAULTS = {"dc": 0.5 + 0.3j, "gain_db": 1.0, "phase_deg": 5.0}
-
-
-@dataclass(frozen=True)
-class Baseband:
-    """IQ samples of an array after the low-pass.
-
-    Attributes
-    ----------
-    x : ndarray of complex, shape (..., N, n)
-        Samples of N sensors, from a filter that is full.
-    fs : float
-        Sampling rate in Hz.
-    array : RadarArray
-        The N sensors.
-    delay : float
-        Group delay of the low-pass in s.
-    first : float
-        Time on the clock at which the first sample comes out, in s. It shows what happened at
-        ``first - delay``.
-    noise_gain : float
-        Variance of white noise after the low-pass over what its density in the passband amounts
-        to at the new rate. Below 1: the skirts of the filter lose a little of it.
-    """
-
-    x: np.ndarray
-    fs: float
-    array: RadarArray
-    delay: float = 0.0
-    first: float = 0.0
-    noise_gain: float = 1.0
+# What the signal-to-noise ratio of a whole window must be: in mere noise the highest peak reaches
+# 10 or 15, and 20 in less than one window of a hundred thousand.
+SEEN = 20.0
 
 
 @dataclass(frozen=True)
@@ -60,7 +31,8 @@ class EndToEnd:
     known : ndarray, shape (K,)
         Time on the clock at which it can be known: the end of its window.
     shift, shift_std : ndarray, shape (runs, K, N)
-        Doppler shifts in Hz and the deviations with which they were used.
+        Doppler shifts in Hz and the deviations with which they were used. NaN and infinite where a
+        window is too weak to be used.
     used : int
         Samples that went into the start; the filter runs on those that follow.
     x : ndarray, shape (runs, H, 1 + K - used, 6)
@@ -70,6 +42,10 @@ class EndToEnd:
         Their covariances.
     nis : ndarray, shape (runs, H, K - used)
         Normalized innovation squared.
+    memory : ndarray, shape (runs,)
+        Autocorrelation of the normalized innovations from one sample to the next, averaged over the
+        modules, for the hypothesis that is the likeliest in the end; NaN if a module is missing in
+        any sample.
     score : ndarray, shape (runs, H, 1 + K - used)
         Minus twice the log likelihood of all samples so far, up to a constant; infinite if there is
         no such hypothesis.
@@ -85,8 +61,15 @@ class EndToEnd:
     x: np.ndarray
     P: np.ndarray
     nis: np.ndarray
+    memory: np.ndarray
     score: np.ndarray
     sigma_p: float
+
+    @property
+    def final_nis(self):
+        """NIS of the hypothesis that is the likeliest in the end, shape (runs, K - used)."""
+        chosen = np.argmin(self.score[:, :, -1], axis=1)
+        return self.nis[np.arange(len(chosen)), chosen]
 
     def samples_at(self, moment):
         """Return how many samples of the filter are known at a moment.
@@ -150,62 +133,6 @@ class EndToEnd:
         return x, P, chosen
 
 
-def received(runs, *, rng, fs=10e3, snr_db=20.0, factor=5, faults=True):
-    """Simulate what the six modules record of the target of Table 2, up to the low-pass.
-
-    Parameters
-    ----------
-    runs : int
-        Number of independent records of the same track.
-    rng : numpy.random.Generator
-        Source of start phases and noise. Run 3 is the same in any number of runs.
-    fs : float
-        Sampling rate of the converter in Hz.
-    snr_db : float or None
-        Power of an echo over the variance of a complex sample at that rate, in dB; None for no
-        noise.
-    factor : int
-        Every how many samples one is kept after the low-pass.
-    faults : bool
-        Whether the modules have a constant and unequal branches, see `FAULTS`.
-
-    Returns
-    -------
-    Baseband
-        The modules' faults are still in it. Leading axis ``runs``.
-
-    Raises
-    ------
-    ValueError
-        If an argument is refused by `iq_from_geometry` or `lowpass_decimate`.
-
-    Notes
-    -----
-    The low-pass has real coefficients, so it treats I and Q alike, and what the branches need may
-    be done after it, on fewer samples.
-    """
-    runs = _checks.whole_number("runs", runs)
-    _checks.generator("rng", rng)
-    fs = _checks.positive_number("fs", fs)
-    factor = _checks.whole_number("factor", factor)
-    s = scenario()
-    t = np.arange(round(s.time[-1] * fs) + 1) / fs
-    path = s.x0[:3] + t[:, None] * s.x0[3:]
-    impulse = np.zeros(40 * factor + 1)
-    impulse[0] = 1.0
-    b = lowpass(impulse, fs, fs / (2 * factor), 20 * factor + 1)[0].real if factor > 1 else impulse
-    records = []
-    for child in rng.spawn(runs):
-        x = iq_from_geometry(path, s.array, snr_db, rng=child)
-        if faults:
-            x = add_iq_imbalance(add_dc(x, FAULTS["dc"]), FAULTS["gain_db"], FAULTS["phase_deg"])
-        y, fs_out, delay = lowpass_decimate(x, fs, factor)
-        filling = int(np.ceil(2 * delay * fs_out - 1e-9))
-        records.append(y[:, filling:])
-    gain = factor * float(np.sum(b**2))
-    return Baseband(np.stack(records), fs_out, s.array, delay, filling / fs_out, gain)
-
-
 def track_iq(
     iq,
     *,
@@ -215,8 +142,11 @@ def track_iq(
     subtract_delay=True,
     start=0.3,
     remove_dc=True,
+    dc_until=None,
     balance=True,
+    estimator=ml_frequency,
     inflate=1.0,
+    sigma_p=None,
     search="quarters",
 ):
     """Find and track a target from IQ samples.
@@ -237,8 +167,16 @@ def track_iq(
         Time on the clock in s until which shifts go into the maximum-likelihood start.
     remove_dc, balance : bool
         Whether a constant is removed, and whether the branches are made equal.
+    dc_until : float, optional
+        Time on the clock in s until which the mean of the samples is taken for the constant; the
+        whole record if None. An echo that grows has a mean too, most of it from its end.
+    estimator : callable
+        What finds the frequency of a window, see `sliding_doppler`.
     inflate : float
         Factor on the variances of the shifts.
+    sigma_p : float, optional
+        Standard deviation of the acceleration in m/s^2, for one millisecond; that of the scenario
+        if None.
     search : {"quarters", "room"}
         Where hypotheses about the start come from. "quarters": the likeliest state in each quarter
         of the room, by the signs of y and z. "room": the likeliest and the second one that
@@ -251,8 +189,8 @@ def track_iq(
     Raises
     ------
     ValueError
-        If there are less than two windows in `start`, `inflate` is not positive, or an argument is
-        refused by `sliding_doppler`.
+        If there are less than two windows in `start`, `inflate` or `sigma_p` is not positive,
+        `dc_until` is not within the record, or an argument is refused by `sliding_doppler`.
 
     Notes
     -----
@@ -262,41 +200,59 @@ def track_iq(
     The deviations are those of the bound at the *measured* signal-to-noise ratio of each window and
     module. The box of the start is `start_box`.
 
-    The acceleration of the scenario is that of one millisecond. For another hop it is scaled, so
-    that the velocity wanders as far in a second.
+    A module that is dead or too weak in a window is missing there, and the others go on: its
+    measured signal-to-noise ratio in the whole window has to be 20 at least.
+
+    The acceleration is that of one millisecond. For another hop it is scaled, so that the velocity
+    wanders as far in a second.
     """
     _checks.instance("iq", iq, Baseband)
     inflate = _checks.positive_number("inflate", inflate)
     _checks.one_of("tag", tag, ("center", "end"))
     s = scenario()
+    sigma_p = _checks.positive_number("sigma_p", s.sigma_p if sigma_p is None else sigma_p)
     n = round(_checks.positive_number("window", window) * iq.fs)
     step = n if hop is None else max(1, round(_checks.positive_number("hop", hop) * iq.fs))
-    x = remove_mean(iq.x) if remove_dc else iq.x
+    x = _without_constant(iq, dc_until) if remove_dc else iq.x
     x = correct_iq_imbalance(x) if balance else x
     top = signal_chain()["speed_limit_m_s"] * iq.array.doppler_per_speed
-    d = sliding_doppler(x, iq.fs, n, step, band=(-top, top), tag=tag)
+    d = sliding_doppler(x, iq.fs, n, step, estimator, band=(-top, top), tag=tag)
     time = iq.first + d.time - (iq.delay if subtract_delay else 0.0)
     known = iq.first + _ends(d)
-    std = d.frequency_std * np.sqrt(inflate / iq.noise_gain)
+    seen = n * d.snr >= SEEN
+    z = np.where(seen, d.frequency, np.nan)
+    std = np.where(seen, d.frequency_std * np.sqrt(inflate / iq.noise_gain), np.inf)
     used = int(np.sum(known <= _checks.positive_number("start", start) + 1e-9))
     if used < 2:
         raise ValueError(f"start must hold at least two windows, got {used} in {start} s")
     T = step / iq.fs
-    sigma_p = s.sigma_p * np.sqrt(s.T)
-    boxes = [start_box()]
+    sigma_p = sigma_p * np.sqrt(s.T)
+    boxes = [_room()]
     if _checks.one_of("search", search, ("quarters", "room")) == "quarters":
         boxes = quarters(*boxes[0])
     apart = -(-n // step)
-    states, costs, deviation = hypotheses(d.frequency[:, :used], std[:, :used], iq, T, apart, boxes)
-    early = np.broadcast_to(
-        deviation[:, None, None], (len(x), len(range(used)[::apart]), x.shape[1])
-    )
+    states, costs, weights = hypotheses(z[:, :used], std[:, :used], iq.array, T, apart, boxes)
     each = [
-        filters(z, s, weights, iq.array, T, used, apart, sigma_p / np.sqrt(T), *starts)
-        for z, s, weights, *starts in zip(d.frequency, std, early, states, costs, strict=True)
+        filters(z, s, early, iq.array, T, used, apart, sigma_p / np.sqrt(T), *starts)
+        for z, s, early, *starts in zip(z, std, weights, states, costs, strict=True)
     ]
     fields = (np.array(field) for field in zip(*each, strict=True))
-    return EndToEnd(time, known, d.frequency, std, used, *fields, sigma_p)
+    return EndToEnd(time, known, z, std, used, *fields, sigma_p)
+
+
+@cache
+def _room():
+    """Return the box of the start, which takes longer to read than a record to track."""
+    return start_box()
+
+
+def _without_constant(iq, until):
+    if until is None:
+        return remove_mean(iq.x)
+    samples = round((_checks.one_number("dc_until", until) - iq.first) * iq.fs)
+    if not 1 <= samples <= iq.x.shape[-1]:
+        raise ValueError(f"dc_until must be within the record, got {until}")
+    return iq.x - iq.x[..., :samples].mean(axis=-1, keepdims=True)
 
 
 def _ends(doppler):

@@ -9,8 +9,8 @@ import numpy as np
 
 from ... import _checks
 from ...signal.recording import Recording, read_sigmf, write_sigmf
-from .end_to_end import Baseband, received
 from .published import DATA, scenario
+from .received_iq import Baseband, received
 
 # Everything that the recording depends on, beside the scenario.
 SIMULATED = {"seed": 20160907, "fs": 2000.0, "snr_db": 27.0, "amplitude": 0.4, "truth_step": 0.02}

@@ -69,7 +69,9 @@ def doppler_filter(x, windows=None, first=None):
     -----
     Eqs 1 to 6 of the document, read as `dopplerlib.signal.interpolation.parabolic`: with bins
     this close, its three highest are neighbors, and the frequency is the vertex and no root. The
-    signal-to-noise ratio is that of `dopplerlib.signal.sliding.DopplerRecord`.
+    signal-to-noise ratio is the power of the peak, less what the noise adds to it, over that of the
+    residual. On average it is too large by (n - 1.5) / (n - 2.5) in a window of n samples: a
+    quarter of a decibel in one of 20, where a choice among windows does not feel it.
     """
     own, T = chosen(), stated().T
     x = _checks.finite_complex("x", x, (None,))

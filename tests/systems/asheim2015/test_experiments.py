@@ -1,6 +1,7 @@
 """Comparisons of trackers: a delay that is known does less harm than one that is not."""
 
 import numpy as np
+import pytest
 
 from dopplerlib.systems import asheim2015 as thesis
 
@@ -59,3 +60,21 @@ def test_what_the_gate_refuses_depends_on_the_start_and_not_with_a_floor():
     assert near.high < 0.05 and far.low > 0.5
     ((kept,),) = thesis.refused_scans([0.05], [1e-4], 20, rng=np.random.default_rng(8), floor=None)
     assert kept.value < 0.005
+
+
+def test_without_noise_a_known_delay_leaves_no_error(monkeypatch):
+    """The person moves 7 cm in half a scan: errors are taken where the person is by then.
+
+    Filters apart lag behind the bend of the ranges by a centimeter or two.
+    """
+    monkeypatch.setattr(thesis.scene, "deviations", lambda d, law=None: np.zeros((*d.shape, 2)))
+    found = list(thesis.late_radar([0.5], 1, rng=np.random.default_rng(9)).values())
+    for values in found[2:]:
+        assert values[0].value < 0.03
+
+
+def test_a_delay_beyond_the_next_scan_is_refused():
+    for offset in (-0.1, 0.2):
+        late = thesis.simulate(1, rng=np.random.default_rng(1), duration=1, offset=offset)
+        with pytest.raises(ValueError, match="offset of the records must lie between 0 and"):
+            thesis.central_filter(late, thesis.settings("modern"))

@@ -85,3 +85,10 @@ def test_the_range_of_each_run_is_that_of_the_run_alone(errors):
     time, a, _ = errors
     each = thesis.usable_range_of_each(a, time, time)
     np.testing.assert_array_equal(each, [thesis.usable_range(e[None], time, time) for e in a])
+
+
+def test_one_scan_has_no_range_and_a_record_no_less_than_one_interval():
+    with pytest.raises(ValueError, match="time must have two scans or more, got 1"):
+        thesis.usable_range([[1.0]], [0.0], [0.0])
+    with pytest.raises(ValueError, match=r"duration must be at least the interval of 0\.1 s"):
+        thesis.scan_times(duration=0.04)

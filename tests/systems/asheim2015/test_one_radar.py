@@ -98,9 +98,73 @@ def test_using_the_first_measurement_twice_moves_the_start(z):
     np.testing.assert_allclose(moved[:, 0], expected, rtol=0.1)
 
 
-def test_an_empty_first_scan_needs_a_start():
+@pytest.mark.parametrize("gate", ["box", "nis", None])
+def test_the_nearest_is_that_of_least_nis(gate):
+    """By hand, with S = F P0 F' + Q + R.
+
+    Of three detections inside the gate the first is nearest in range and the second in velocity,
+    but the third has the least NIS.
+    """
+    own = thesis.settings("code", gate=gate)
+    S = F @ own.P0 @ F.T + own.Q + np.diag(own.R(1.0))
+    nu = np.array([[0.1, 0.5], [0.8, 0.0], [0.3, 0.05]])
+    nis = np.sum(nu * np.linalg.solve(S, nu.T).T, axis=-1)
+    assert [np.argmin(abs(nu[:, 0])), np.argmin(abs(nu[:, 1])), np.argmin(nis)] == [0, 1, 2]
+    detections = np.full((2, 3, 2), np.nan)
+    detections[0, 0] = [2.0, 0.1]
+    detections[1] = np.array([2.01, 0.1]) + nu
+    track = thesis.filter_radar(detections, own)
+    np.testing.assert_allclose(track.chosen[1], detections[1, 2])
+    assert track.nis[1] == pytest.approx(nis.min())
+
+
+def test_the_noise_law_is_taken_at_the_predicted_range():
+    """By hand: a detection two meters farther, where R is a hundred times larger."""
+    own = thesis.settings("modern", gate=None)
+    z = np.array([[[2.0, 0.1]], [[4.0, 0.0]]])
+    P = F @ own.P0 @ F.T + own.Q
+    x = F @ z[0, 0]
+    K = P @ np.linalg.inv(P + np.diag(own.R(x[0])))
+    track = thesis.filter_radar(z, own)
+    np.testing.assert_allclose(track.x[1], x + K @ (z[1, 0] - x), rtol=1e-10)
+
+
+def test_a_gate_on_nis_looks_at_the_rate_only_if_the_filter_uses_it():
+    own = thesis.settings("modern")
+    detections = np.array([[[2.0, 0.1]], [[2.01, 9.0]]])
+    for doppler in (True, False):
+        assert thesis.filter_radar(detections, own, doppler=doppler).updated[1] == (not doppler)
+
+
+def test_the_gate_on_ranges_alone_has_one_degree_of_freedom():
+    """A thousandth is beyond a squared normal number of 10.83, for two it would be 13.82."""
+    own = thesis.settings("modern")
+    S = (F @ own.P0 @ F.T + own.Q)[0, 0] + own.R(2.01)[0]
+    for nis, inside in ((10.7, True), (10.9, False)):
+        detections = np.array([[[2.0, 0.1]], [[2.01 + np.sqrt(nis * S), 0.1]]])
+        assert thesis.filter_radar(detections, own, doppler=False).updated[1] == inside
+
+
+def test_the_first_detection_of_the_first_scan_starts_the_track_wherever_it_stands():
+    detections = np.full((2, 3, 2), np.nan)
+    detections[0, 1:] = [[2.0, 0.1], [3.0, 0.2]]
+    track = thesis.filter_radar(detections, thesis.settings("code"))
+    assert track.x[0].tolist() == track.chosen[0].tolist() == [2.0, 0.1]
+    assert track.updated.tolist() == [True, False]
+
+
+@pytest.mark.parametrize("reuse_first", [False, True])
+def test_an_empty_first_scan_needs_a_start_and_that_is_no_detection(reuse_first):
     detections = np.full((3, 1, 2), np.nan)
+    own, options = thesis.settings("code"), {"reuse_first": reuse_first}
     with pytest.raises(ValueError, match="x0 must be given where the first scan is empty"):
-        thesis.filter_radar(detections, thesis.settings("code"))
-    track = thesis.filter_radar(detections, thesis.settings("code"), x0=[1.9, 0.1])
-    assert track.x[0].tolist() == [1.9, 0.1]
+        thesis.filter_radar(detections, own, **options)
+    track = thesis.filter_radar(detections, own, x0=[1.9, 0.0], **options)
+    assert track.x[0].tolist() == [1.9, 0.0]
+    assert np.isnan(track.chosen).all() and not track.updated.any()
+
+
+@pytest.mark.parametrize("shape", [(0, 1, 2), (3, 0, 2)])
+def test_a_record_without_room_for_a_detection_is_refused(shape):
+    with pytest.raises(ValueError, match="detections must have scans and detections in each"):
+        thesis.filter_radar(np.empty(shape), thesis.settings("code"), x0=[1.9, 0.1])

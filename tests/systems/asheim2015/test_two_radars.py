@@ -6,7 +6,8 @@ import pytest
 from dopplerlib import chi2_interval, nees
 from dopplerlib.estimation.track import Track
 from dopplerlib.evaluation.range_bounds import range_crlb
-from dopplerlib.model.range_rate import range_rate_jacobian
+from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.model.range_rate import range_rate, range_rate_jacobian
 from dopplerlib.systems import asheim2015 as thesis
 from dopplerlib.systems.asheim2015.in_the_plane import polar, polar_jacobian
 
@@ -114,3 +115,19 @@ def test_a_late_radar_does_no_harm_if_its_time_is_known(offset):
     truth = thesis.straight_track(late.time + offset)
     error = thesis.distance_error(thesis.central_filter(late, thesis.settings("modern")).p, truth)
     assert thesis.rmse(error, late.time, 25, 1) < 0.1
+
+
+def test_the_nis_of_the_filter_in_the_plane_is_that_of_its_first_prediction(records):
+    """By hand, with both components of radar 1 and the covariance between them."""
+    own, start = thesis.settings("modern"), np.array([0.05, 0.1, 0.1, 0.1])
+    found = thesis.central_filter(records.first(1), own, start=start).nis[0, 0, 1]
+    F = ncv_transition(own.T, dim=2, order="derivative")
+    Q = wna_process_noise(own.T, own.Q[1, 1] / own.T, dim=2, order="derivative")
+    x = F @ start
+    P = F @ (thesis.scenario()["cartesian"]["start_covariance"] * np.eye(4)) @ F.T + Q
+    predicted = range_rate(x, records.sensors[:1])[0]
+    H = range_rate_jacobian(x, records.sensors[:1])[0]
+    S = H @ P @ H.T + np.diag(own.R(predicted[0]))
+    nu = records.z[0, 0, 1] - predicted
+    assert abs(S[0, 1]) > 0.01 * S[0, 0]
+    assert found == pytest.approx(nu @ np.linalg.solve(S, nu), rel=1e-9)

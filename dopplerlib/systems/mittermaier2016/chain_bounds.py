@@ -1,0 +1,174 @@
+"""How well the position can be known: from windows side by side, and from the samples."""
+
+import numpy as np
+
+from ... import _checks
+from ...evaluation.bounds import crlb
+from ...signal.laws import crlb_frequency_std
+from .published import scenario
+
+
+def position_bound(moment, window, cn0, *, first=0.0, samples_per_second=100e3):
+    """Return how well the position at a moment can be known from windows side by side.
+
+    Parameters
+    ----------
+    moment : float
+        In s; the windows end there at the latest.
+    window : float
+        Length of a window in s.
+    cn0 : float
+        Power of an echo over the noise power in 1 Hz, in Hz.
+    first : float
+        When the first window begins, in s.
+    samples_per_second : float
+        Sampling rate in Hz, of little influence.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Covariance of the position in m^2 at the bound, for the target of Table 2 and constant
+        velocity; infinite entries on the diagonal where the windows are too few.
+
+    See Also
+    --------
+    position_bound_iq : the bound of the samples, which know more than their windows.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive where it has to be, or no window fits.
+
+    Notes
+    -----
+    `crlb` of the moving likelihood with the deviations of `crlb_frequency_std`. It sees the middles
+    of the windows only, no chirp inside them.
+    """
+    s = scenario()
+    window = _checks.positive_number("window", window)
+    cn0 = _checks.positive_number("cn0", cn0)
+    K = int((_checks.one_number("moment", moment) - first) / window + 1e-9)
+    if K < 1:
+        raise ValueError(f"moment must leave room for a window of {window} s, got {moment}")
+    n = max(2, round(window * samples_per_second))
+    sigma = crlb_frequency_std(cn0 * window / n, n, n / window)
+    middle, F = first + window / 2, np.eye(6)
+    F[:3, 3:] = middle * np.eye(3)
+    P = crlb(F @ s.x0, s.array, sigma, K, window, "moving")
+    F[:3, 3:] = (moment - middle) * np.eye(3)
+    return (F @ P @ F.T)[:3, :3]
+
+
+def position_bound_iq(moment, cn0, *, first=0.0, samples_per_second=2000.0):
+    """Return how well the position at a moment can be known from the IQ samples up to it.
+
+    Parameters
+    ----------
+    moment : float
+        In s; the samples end there.
+    cn0 : float
+        Power of an echo over the noise power in 1 Hz, in Hz.
+    first : float
+        When the samples begin, in s.
+    samples_per_second : float
+        Sampling rate in Hz, of little influence.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Covariance of the position in m^2 at the bound, for the target of Table 2 and constant
+        velocity. Amplitude and phase of each sensor's echo are unknown.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive where it has to be, or there are less than three samples.
+
+    Notes
+    -----
+    Slepian-Bangs: with a signal-to-noise ratio of `cn0` over the rate, a sample of phase phi adds
+    ``2 snr dphi dphi^T`` to the information on what phi depends on. The phase of sensor n is an
+    unknown plus -4 pi r_n / wavelength. The unknown takes the mean of the slopes of r_n away; the
+    amplitude takes nothing, as it is in quadrature.
+    """
+    s = scenario()
+    cn0 = _checks.positive_number("cn0", cn0)
+    fs = _checks.positive_number("samples_per_second", samples_per_second)
+    length = _checks.one_number("moment", moment) - _checks.one_number("first", first)
+    if not length * fs >= 3:
+        raise ValueError(f"moment must leave room for three samples, got {moment}")
+    t = first + (np.arange(round(length * fs)) + 0.5) / fs
+    path = s.x0[:3] + t[:, None] * s.x0[3:]
+    away = path - s.array.positions[:, None]  # (N, n, 3)
+    toward = away / np.linalg.norm(away, axis=-1, keepdims=True)
+    # The state at the moment is unknown: a velocity moves the position of earlier samples back.
+    slopes = np.concatenate([toward, (t[:, None] - moment) * toward], axis=-1)
+    slopes *= 4 * np.pi / s.array.wavelength
+    slopes = (slopes - slopes.mean(axis=1, keepdims=True)).reshape(-1, 6)
+    scale = np.linalg.norm(slopes, axis=0)
+    information = 2 * cn0 / fs * (slopes / scale).T @ (slopes / scale)
+    return (np.linalg.inv(information) / np.outer(scale, scale))[:3, :3]
+
+
+def record_for(error, cn0):
+    """Return how long a record has to be until the position can be known so well.
+
+    Parameters
+    ----------
+    error : float
+        Wanted root mean square of the position error at the end of the record, in m.
+    cn0 : float
+        Power of an echo over the noise power in 1 Hz, in Hz.
+
+    Returns
+    -------
+    float
+        Length in s at which `position_bound_iq` comes down to `error`, for a record that begins
+        with the track of Table 2; infinite if the whole track does not do it.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive.
+    """
+    error, cn0 = _checks.positive_number("error", error), _checks.positive_number("cn0", cn0)
+
+    def enough(length):
+        P = position_bound_iq(length, cn0, samples_per_second=400 / length)
+        return np.sqrt(np.trace(P)) <= error
+
+    low, high = 1e-3, float(scenario().time[-1])
+    if not enough(high):
+        return np.inf
+    while high > low * (1 + 1e-6):
+        middle = np.sqrt(low * high)
+        low, high = (low, middle) if enough(middle) else (middle, high)
+    return float(high)
+
+
+def median_error(P, *, rng, draws=20_000):
+    """Return the median length of a normal error.
+
+    Parameters
+    ----------
+    P : array_like, shape (3, 3)
+        Covariance of the error in m^2.
+    rng : numpy.random.Generator
+        Source of randomness.
+    draws : int
+        How many errors are drawn.
+
+    Returns
+    -------
+    float
+        In m, good to about a percent with 20 000 draws.
+
+    Raises
+    ------
+    ValueError
+        If `P` is no covariance, `draws` is not positive, or `rng` is not a generator.
+    """
+    _checks.generator("rng", rng)
+    P = _checks.covariance("P", P, 3)
+    normal = rng.standard_normal((_checks.whole_number("draws", draws), 3))
+    return float(np.median(np.linalg.norm(normal @ np.linalg.cholesky(P).T, axis=-1)))
