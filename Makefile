@@ -37,8 +37,14 @@ book: $(VENV)/.ready  ## build the book: book/_build/html/index.html
 	$(VENV)/bin/jupyter-book build --quiet --all -W -n --keep-going book
 
 .PHONY: test
-test: lint book  ## check everything: style, book without warnings, tests, doctests, notebooks
+test: lint  ## check everything: style, book without warnings, tests, doctests, notebooks
+	$(MAKE) --jobs=2 book compile
 	$(PY) -m pytest -n logical --maxprocesses 4 --dist loadfile
+
+# Building the book keeps one processor busy; meanwhile another one does what would hold up the tests.
+.PHONY: compile
+compile: $(VENV)/.ready  ## compile all that numba compiles, once for every process that follows
+	$(PY) -m tools.compile
 
 .PHONY: lint
 lint: $(VENV)/.ready  ## check style and formatting

@@ -1,0 +1,29 @@
+"""Compile every loop that numba compiles, for all processes that follow.
+
+Nothing needs this: a loop compiles when it is first called, and numba keeps what comes out. But
+processes that start together, as those of the tests do, would all compile the same.
+"""
+
+import numpy as np
+
+from dopplerlib import RadarArray, ekf, ml_frequency, ml_start
+from dopplerlib.estimation._ekf_loop import LANES
+from dopplerlib.systems import valarmathi
+
+
+def main():
+    """Call each of them once, on as little as it takes."""
+    array = RadarArray.ring(6, 0.2)
+    start, box = np.array([1.0, 0, 0, -1, 0, 0]), np.full((2, 6), 1.0) * [[-2], [2]]
+    for runs in (1, LANES):
+        z = np.zeros((runs, 2, 6))
+        ekf(z, array, start, np.eye(6), 0.001, 1.0, 1.0)
+    ml_start(z, array, 1.0, 0.001, box)
+    ml_frequency(np.ones(16, complex), 1.0)
+    rng = np.random.default_rng(1)
+    table = valarmathi.window_table([0, 10], [0, 10], rng=rng, runs=1)
+    valarmathi.run_algorithms("path 1", 0.0, 1, table, rng=rng)
+
+
+if __name__ == "__main__":
+    main()
