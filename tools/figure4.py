@@ -7,7 +7,6 @@ file appears when it is complete; an interrupted comparison goes on where it sto
 import argparse
 import json
 from dataclasses import asdict
-from pathlib import Path
 
 import numpy as np
 
@@ -19,9 +18,9 @@ from dopplerlib.systems.mittermaier2016 import (
     figure4_score,
     published_figure4,
 )
+from dopplerlib.systems.mittermaier2016.published import DATA
 from tools.files import write
 
-DATA = Path(__file__).resolve().parent.parent / "data" / "mittermaier2016"
 SEED = 4
 AGAIN = 11  # of the repetition of the best reading with either likelihood
 DRAWS = 24

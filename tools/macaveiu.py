@@ -9,13 +9,12 @@ import json
 import math
 import multiprocessing
 from dataclasses import astuple, fields
-from pathlib import Path
 
 from dopplerlib._progress import progress_bar
 from dopplerlib.systems.macaveiu2013 import chain_study, paths
+from dopplerlib.systems.macaveiu2013.published import DATA
 from tools.files import write
 
-DATA = Path(__file__).resolve().parent.parent / "data" / "macaveiu2013"
 TOGETHER = 5  # runs between two saves
 
 

@@ -6,11 +6,10 @@ error.
 """
 
 import argparse
-from pathlib import Path
 
 from dopplerlib._progress import progress_bar
 from dopplerlib.systems.valarmathi import ALGORITHMS, chosen
-from dopplerlib.systems.valarmathi.published import PATHS
+from dopplerlib.systems.valarmathi.published import DATA, PATHS
 from dopplerlib.systems.valarmathi.study import (
     CLIFF_RUNS,
     CLIFF_SNRS_DB,
@@ -23,7 +22,6 @@ from dopplerlib.systems.valarmathi.study import (
 )
 from tools.files import write
 
-DATA = Path(__file__).resolve().parent.parent / "data" / "valarmathi"
 HEADS = {
     "study.csv": ",".join(["path", "snr_db", "algorithm", *MEASURES]),
     "cliff.csv": "path,snr_db,algorithm,runs,failed",
