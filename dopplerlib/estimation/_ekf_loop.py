@@ -70,7 +70,7 @@ def compiled(lanes):
 
     @njit(nogil=True, error_model="numpy", cache=True)
     def filter_records(
-        z, positions, doppler_per_speed, variance, Q, T, x0, P0, lower, upper,
+        z, positions, doppler_per_speed, variance, T, Q, x0, P0, lower, upper,
         x, P, innovation, S, nis, updated,
     ):  # fmt: skip
         fingerprint  # noqa: B018  (see _FINGERPRINT)
@@ -87,11 +87,18 @@ def compiled(lanes):
                     work[(kernel.PREDICTED + i) * lanes + lane] = x0[first + lane, i]
                     for j in range(i, 6):
                         work[(kernel.COVARIANCE + row) * lanes + lane] = P0[first + lane, i, j]
-                        work[(kernel.PROCESS_NOISE + row) * lanes + lane] = Q[i, j]
                         row += 1
             for k in range(samples):
+                if k < len(T):  # one interval for all samples, or each its own
+                    for lane in range(width):
+                        row = kernel.PROCESS_NOISE
+                        for i in range(6):
+                            for j in range(i, 6):
+                                work[row * lanes + lane] = Q[k, i, j]
+                                row += 1
+                    interval = T[k]
                 for lane in range(width):
-                    _predict(work, lanes, lane, T)
+                    _predict(work, lanes, lane, interval)
                 for n in range(sensors):
                     for lane in range(width):
                         measured = z[first + lane, k, n]

@@ -42,9 +42,10 @@ def ekf(
     x0 : array_like, shape (..., 6)
         State [x, y, z, v_x, v_y, v_z] in m and m/s one interval *before* the first sample.
     P0 : array_like, shape (..., 6, 6)
-        Covariance of `x0`. Leading axes of `x0` and `P0` broadcast against those of `z`.
-    T : float
-        Sampling interval in s.
+        Covariance of `x0`; it may be singular: a component can be known exactly. Leading axes of
+        `x0` and `P0` broadcast against those of `z`.
+    T : array_like, scalar or shape (K,)
+        Sampling interval in s; with uneven times the interval before each sample.
     sigma_p : float
         Standard deviation of the acceleration in m/s^2, see `constant_velocity`.
     sigma_f : array_like, broadcast to (K, N)
@@ -76,8 +77,8 @@ def ekf(
     ------
     ValueError
         If an argument has the wrong shape or is not made of real numbers, a setting is not finite
-        and positive, a covariance is not positive definite, a measurement is infinite, or the
-        target is predicted onto a sensor at the first sample.
+        and positive, `P0` is not a covariance (it may be singular), a measurement is infinite, or
+        the target is predicted onto a sensor at the first sample.
 
     Notes
     -----
@@ -107,13 +108,13 @@ def ekf(
     """
     _checks.instance("array", array, RadarArray)
     z = _measurements(z, array)
-    T = _checks.positive_number("T", T)
+    T = _intervals(T, z.shape[-2])
     F, Q = constant_velocity(T, sigma_p, noise)
     variance = _variance(sigma_f, z.shape[-2:])
     lower, upper = gate_bounds(gate, len(array), confidence)
     x0 = _checks.finite("x0", x0, (6,))
-    check_clear_of_sensors("F x0", x0 @ F.T, array)
-    P0 = _checks.covariance("P0", P0, 6)
+    check_clear_of_sensors("F x0", x0 @ F[0].T, array)
+    P0 = _checks.covariance("P0", P0, 6, definite=False)
     keep = _checks.some_of("keep", keep, _OPTIONAL)
     if workers is not None:
         workers = _checks.whole_number("workers", workers)
@@ -128,7 +129,7 @@ def ekf(
     )
     # Whether an array may be written to is part of its type: numba would compile the loop again
     # for every mixture, 5 s each.
-    for value in (z, variance, x0, P0):
+    for value in (z, variance, T, Q, x0, P0):
         value.flags.writeable = False
     shapes = {
         "x": (6,), "P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors), "nis": (),
@@ -148,7 +149,7 @@ def ekf(
     def part(rows):
         results = [value[rows] for value in out.values()]
         compiled(lanes)(
-            z[rows], array.positions, array.doppler_per_speed, variance, Q, T, x0[rows], P0[rows],
+            z[rows], array.positions, array.doppler_per_speed, variance, T, Q, x0[rows], P0[rows],
             lower, upper, *results,
         )  # fmt: skip
 
@@ -225,6 +226,16 @@ def _measurements(z, array):
             f"z must be finite, or NaN where a sensor is missing, got {z[place]} at index {place}"
         )
     return z
+
+
+def _intervals(T, samples):
+    """Return the intervals before the samples, (samples,), or (1,) if all are the same."""
+    T = _checks.deviation("T", T)
+    if T.shape not in ((), (samples,)):
+        raise ValueError(
+            f"T must be one number or have shape (K,) = ({samples},), got shape {T.shape}"
+        )
+    return T.reshape(-1).copy()
 
 
 def _variance(sigma_f, shape):

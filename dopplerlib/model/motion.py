@@ -10,8 +10,8 @@ def constant_velocity(T, sigma_p, noise="common"):
 
     Parameters
     ----------
-    T : float
-        Sampling interval in s.
+    T : array_like, shape (...)
+        Sampling intervals in s.
     sigma_p : float
         Standard deviation of the acceleration, constant during one interval, in m/s^2.
     noise : {"common", "independent"}
@@ -21,10 +21,10 @@ def constant_velocity(T, sigma_p, noise="common"):
 
     Returns
     -------
-    F : ndarray, shape (6, 6)
-        Transition matrix, Eq 4.
-    Q : ndarray, shape (6, 6)
-        Covariance of the process noise of one interval.
+    F : ndarray, shape (..., 6, 6)
+        Transition matrix of each interval, Eq 4.
+    Q : ndarray, shape (..., 6, 6)
+        Covariance of the process noise of each interval.
 
     Raises
     ------
@@ -42,16 +42,14 @@ def constant_velocity(T, sigma_p, noise="common"):
     >>> int(np.linalg.matrix_rank(Q)), int(np.linalg.matrix_rank(Q3))
     (1, 3)
     """
-    T = _checks.one_number("T", T, _checks.deviation)
+    T = _checks.deviation("T", T)[..., None, None]
     sigma_p = _checks.one_number("sigma_p", sigma_p, _checks.deviation)
     _checks.one_of("noise", noise, ("common", "independent"))
-    eye = np.eye(3)
-    F = np.eye(6)
-    F[:3, 3:] = T * eye
-    axes = np.ones((3, 1)) if noise == "common" else eye
-    G = np.vstack([T**2 / 2 * axes, T * axes])
+    F = np.eye(6) + T * np.eye(6, k=3)
+    axes = np.ones((3, 1)) if noise == "common" else np.eye(3)
+    G = np.concatenate([T**2 / 2 * axes, T * axes], axis=-2)
     with np.errstate(over="ignore", invalid="ignore"):
-        Q = sigma_p**2 * (G @ G.T)
+        Q = sigma_p**2 * (G @ np.swapaxes(G, -1, -2))
     if not np.isfinite(Q).all():
-        raise ValueError(f"T must give a finite Q with sigma_p = {sigma_p}, got {T}")
+        raise ValueError(f"T must give a finite Q with sigma_p = {sigma_p}, got {T.max()}")
     return F, Q

@@ -66,8 +66,20 @@ def test_noise_grows_with_the_square_of_its_deviation(noise):
     np.testing.assert_array_equal(Q, Q.T)
 
 
-@pytest.mark.parametrize("bad", [0, -1.0, np.nan, np.inf, [1.0, 2.0], "fast", None])
-@pytest.mark.parametrize("name", ["T", "sigma_p"])
+@pytest.mark.parametrize("noise", BOTH)
+def test_each_interval_has_the_matrices_of_this_interval_alone(noise):
+    intervals = np.array([[0.001, 4.0, 0.3], [1.0, 0.07, 12.0]])
+    F, Q = constant_velocity(intervals, SIGMA, noise)
+    for at, interval in np.ndenumerate(intervals):
+        alone = constant_velocity(interval, SIGMA, noise)
+        assert (F[at].tolist(), Q[at].tolist()) == (alone[0].tolist(), alone[1].tolist())
+
+
+@pytest.mark.parametrize(
+    ("name", "bad"),
+    [(name, bad) for name in ("T", "sigma_p") for bad in (0, -1.0, np.nan, np.inf, "fast", None)]
+    + [("T", [1.0, 0.0]), ("sigma_p", [1.0, 2.0])],
+)
 def test_an_impossible_number_is_refused_by_name(name, bad):
     arguments = {"T": T, "sigma_p": SIGMA, name: bad}
     with pytest.raises(ValueError, match=rf"^{name} must be .*, got "):
