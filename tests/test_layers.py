@@ -10,6 +10,7 @@ LIBRARY = Path(__file__).resolve().parents[1] / "dopplerlib"
 ORDER = [
     "_checks",
     "_progress",
+    "_files",
     "kernels",
     "model",
     "signal",

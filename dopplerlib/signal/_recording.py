@@ -1,6 +1,5 @@
 """A recording, and what its two formats on disk have in common."""
 
-from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from os import PathLike
@@ -64,33 +63,6 @@ def utc(name, start):
     if not isinstance(start, datetime) or start.utcoffset() is None:
         raise ValueError(f"{name} must be a datetime with a time zone or None, got {start!r}")
     return start.astimezone(UTC)
-
-
-def file_to_write(path):
-    """Return a path, or raise unless a file can stand there."""
-    if not isinstance(path, (str, PathLike)):
-        raise ValueError(f"path must be the path of a file, got {path!r}")
-    path = Path(path)
-    if not path.name or path.is_dir() or not path.parent.is_dir():
-        raise ValueError(f"path must be that of a file in a folder that exists, got {str(path)!r}")
-    return path
-
-
-@contextmanager
-def replacing(*paths):
-    """Give temporary files beside `paths`, which replace them if all goes well.
-
-    Whatever happens, none of them is left behind.
-    """
-    # The end of the name stays: SigMF tells by it what a file is.
-    temporary = [path.with_name(f"{path.stem}.tmp{path.suffix}") for path in paths]
-    try:
-        yield temporary
-        for new, path in zip(temporary, paths, strict=True):
-            new.replace(path)
-    finally:
-        for new in temporary:
-            new.unlink(missing_ok=True)
 
 
 def read_together(paths, end, read):

@@ -8,7 +8,8 @@ from datetime import datetime
 import numpy as np
 
 from .. import _checks
-from ._recording import Recording, checked, file_to_write, first_line, read_together, replacing, utc
+from .._files import file_to_write, replacing
+from ._recording import Recording, checked, first_line, read_together, utc
 
 _META, _DATA = ".sigmf-meta", ".sigmf-data"
 _FULL_SCALE = 2**15
@@ -85,7 +86,8 @@ def write_sigmf(path, recording, samples="complex128", description=""):
     for one in (data, meta):
         file_to_write(one)
     with replacing(data, meta) as (new_data, new_meta):
-        values.tofile(new_data)
+        with new_data.open("wb") as file:  # tofile says of a full disk only how much went in
+            file.write(values.data)
         file = SigMFFile(data_file=new_data, global_info=info)
         file.add_capture(0, metadata=capture)
         file.validate()

@@ -5,7 +5,8 @@ import warnings
 import numpy as np
 
 from .. import _checks
-from ._recording import Recording, checked, file_to_write, first_line, read_together, replacing, utc
+from .._files import file_to_write, replacing
+from ._recording import Recording, checked, first_line, read_together, utc
 
 _DOUBLE = 8  # bytes of a value
 

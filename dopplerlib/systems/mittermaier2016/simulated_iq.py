@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ... import _checks
+from ..._files import write_text
 from ...signal.recording import Recording, read_sigmf, write_sigmf
 from .published import DATA, scenario
 from .received_iq import Baseband, received
@@ -64,7 +65,7 @@ def write_simulated_iq(folder):
     rows = np.column_stack([time, truth])
     lines = [_HEAD, *(",".join(f"{value:.6f}" for value in row) for row in rows)]
     table = folder / f"{_NAME}_truth.csv"
-    table.write_bytes(("\n".join(lines) + "\n").encode())
+    write_text(table, "\n".join(lines) + "\n")
     return [meta, folder / f"{_NAME}.sigmf-data", table]
 
 
