@@ -46,6 +46,31 @@ def test_the_probe_does_see_what_is_loaded():
     assert "numba" in loaded_after("import dopplerlib.estimation._ekf_loop")
 
 
+def test_importing_any_module_reads_no_file_but_modules():
+    code = f"""
+import pkgutil, sys
+from importlib import import_module
+opened = set()
+sys.addaudithook(lambda event, args: event == "open" and opened.add(str(args[0])))
+open({str(ROOT / "README.md")!r}).close()
+import dopplerlib
+for module in pkgutil.walk_packages(dopplerlib.__path__, "dopplerlib."):
+    if not module.name.endswith("__main__"):
+        import_module(module.name)
+print(*sorted(opened), sep="\\n")
+"""
+    result = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    opened = {Path(line) for line in result.stdout.splitlines() if line.startswith(str(ROOT))}
+    ours = {
+        path.relative_to(ROOT)
+        for path in opened
+        if path.suffix not in (".py", ".pyc") and path.is_file() and ".venv" not in path.parts
+    }
+    assert ours == {Path("README.md")}
+
+
 @pytest.mark.parametrize("name", dopplerlib.__all__)
 def test_every_public_name_is_there(name):
     value = getattr(dopplerlib, name)

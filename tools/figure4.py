@@ -12,13 +12,13 @@ import numpy as np
 
 from dopplerlib._progress import progress_bar
 from dopplerlib.systems.mittermaier2016 import (
-    SCORED_LEVELS,
-    SWEEP_READINGS,
     figure4,
     figure4_score,
     published_figure4,
+    scored_levels,
+    sweep_readings,
 )
-from dopplerlib.systems.mittermaier2016.published import DATA
+from dopplerlib.systems.mittermaier2016.published import data_file
 from tools.files import write
 
 SEED = 4
@@ -42,15 +42,15 @@ def readings(path):
     """Write the score of every reading, with what is needed to make it again."""
     part = path.with_suffix(".part")
     rows = json.loads(part.read_text(encoding="utf-8")) if part.exists() else []
-    for reading in progress_bar(SWEEP_READINGS[len(rows) :], "readings"):
+    for reading in progress_bar(sweep_readings()[len(rows) :], "readings"):
         rows.append(score(reading, SEED))
         write(part, json.dumps(rows))
     best = [
         max(range(len(rows)), key=lambda i: (rows[i]["likelihood"] == name, rows[i]["score"]))
         for name in ("moving", "static")
     ]
-    again = [score(SWEEP_READINGS[i], AGAIN) for i in best]
-    head = {"seed": SEED, "draws": DRAWS, "levels": list(SCORED_LEVELS), "seed_again": AGAIN}
+    again = [score(sweep_readings()[i], AGAIN) for i in best]
+    head = {"seed": SEED, "draws": DRAWS, "levels": list(scored_levels()), "seed_again": AGAIN}
     parts = [f'  "{name}": {json.dumps(value)}' for name, value in head.items()]
     for name, table in {"again": again, "readings": rows}.items():
         lines = ",\n".join("    " + json.dumps(row) for row in table)
@@ -62,7 +62,7 @@ def readings(path):
 def score(reading, seed):
     """Return the fields of a reading, its score, and the interval of the score."""
     result = figure4(
-        SCORED_LEVELS, DRAWS, rng=np.random.default_rng(seed), reading=reading, bound=False
+        scored_levels(), DRAWS, rng=np.random.default_rng(seed), reading=reading, bound=False
     )
     values = figure4_score(result, published_figure4(), rng=np.random.default_rng(seed))
     rounded = (round(value, 1) for value in values)
@@ -74,9 +74,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("what", choices=["study", "readings"])
     if parser.parse_args().what == "study":
-        study(DATA / "ourfigure4.csv")
+        study(data_file("ourfigure4.csv"))
     else:
-        readings(DATA / "ourfigure4_readings.json")
+        readings(data_file("ourfigure4_readings.json"))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from dataclasses import astuple, fields
 
 from dopplerlib._progress import progress_bar
 from dopplerlib.systems.macaveiu2013 import chain_study, paths
-from dopplerlib.systems.macaveiu2013.published import DATA
+from dopplerlib.systems.macaveiu2013.published import data_file
 from tools.files import write
 
 TOGETHER = 5  # runs between two saves
@@ -66,4 +66,4 @@ def text(value):
 
 
 if __name__ == "__main__":
-    study(DATA, tuple(paths()), chain_study.RUNS)
+    study(data_file(), tuple(paths()), chain_study.RUNS)

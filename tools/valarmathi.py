@@ -9,7 +9,7 @@ import argparse
 
 from dopplerlib._progress import progress_bar
 from dopplerlib.systems.valarmathi import ALGORITHMS, chosen
-from dopplerlib.systems.valarmathi.published import DATA, PATHS
+from dopplerlib.systems.valarmathi.published import PATHS, data_file
 from dopplerlib.systems.valarmathi.study import (
     CLIFF_RUNS,
     CLIFF_SNRS_DB,
@@ -66,8 +66,8 @@ def make(path, snrs_db, runs, rows_of):
 def main():
     """Make both files."""
     argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
-    make(DATA / "study.csv", SNRS_DB, RUNS, study_rows)
-    make(DATA / "cliff.csv", CLIFF_SNRS_DB, CLIFF_RUNS, cliff_rows)
+    make(data_file("study.csv"), SNRS_DB, RUNS, study_rows)
+    make(data_file("cliff.csv"), CLIFF_SNRS_DB, CLIFF_RUNS, cliff_rows)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 """A drawing that moves under the reader's hands: HTML and JavaScript, without a server."""
 
 import json
-from pathlib import Path
+from importlib.resources import files
 
-TEMPLATE = Path(__file__).with_name("demonstration.html")
+TEMPLATE = files(__package__) / "demonstration.html"
 
 
 def doppler_demonstration(javascript, array, x):

@@ -1,12 +1,12 @@
 """What all figures share: the style file, the colors by meaning, and a fresh figure."""
 
 from contextlib import contextmanager
-from pathlib import Path
+from importlib.resources import as_file, files
 
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-STYLE = Path(__file__).with_name("style.mplstyle")
+STYLE = files(__package__) / "style.mplstyle"
 
 # One meaning, one color, all through the book.
 OURS = "#0072B2"
@@ -29,7 +29,7 @@ def styled(width=7.0, height=4.0):
     The figure is not registered with pyplot: the function that made it returns it, and nothing
     else holds it.
     """
-    with plt.style.context(STYLE):
+    with as_file(STYLE) as path, plt.style.context(path):
         figure = plt.figure(figsize=(width, height))
         plt.close(figure)
         yield figure

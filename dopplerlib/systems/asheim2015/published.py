@@ -1,16 +1,16 @@
 """What the thesis prints: settings of its text and of its code, from ``data/asheim2015``."""
 
-import tomllib
 from dataclasses import dataclass
-from pathlib import Path
+from functools import cache, partial
 
 import numpy as np
 
 from ... import _checks
+from ..._data import data, read_toml
 from ...model.kinematics import wna_process_noise
 from ...model.ranging_noise import linear_snr, resolution_deviation
 
-DATA = Path(__file__).parents[3] / "data" / "asheim2015"
+data_file = partial(data, "asheim2015")
 SETTINGS = ("text", "code", "modern")
 
 
@@ -65,7 +65,7 @@ def scenario():
     -------
     dict
     """
-    return tomllib.loads((DATA / "scenario.toml").read_text(encoding="utf-8"))
+    return read_toml("asheim2015", "scenario.toml")
 
 
 def quoted():
@@ -75,7 +75,7 @@ def quoted():
     -------
     dict
     """
-    return tomllib.loads((DATA / "quoted.toml").read_text(encoding="utf-8"))
+    return read_toml("asheim2015", "quoted.toml")
 
 
 def audit():
@@ -87,7 +87,7 @@ def audit():
         The tables of ``data/asheim2015/audit.toml``: where it stands (`place`), what is `told` and
         what `found`, our `choice`, and the label of the chapter that treats it (`page`).
     """
-    return tomllib.loads((DATA / "audit.toml").read_text(encoding="utf-8"))["slip"]
+    return read_toml("asheim2015", "audit.toml")["slip"]
 
 
 def resolutions():
@@ -118,7 +118,7 @@ def snr(d):
     ndarray, shape (...)
         In dB.
     """
-    n = _NOISE
+    n = _noise()
     return linear_snr(d, n["snr_at_zero"], n["snr_slope"])
 
 
@@ -138,7 +138,7 @@ def deviations(d, law=None):
         In m and m/s.
     """
     snr_db = (law or snr)(d)
-    return np.stack([resolution_deviation(res, snr_db) for res in _RESOLUTIONS], axis=-1)
+    return np.stack([resolution_deviation(res, snr_db) for res in _resolutions()], axis=-1)
 
 
 def settings(name, T=None, *, q=None, floor=None, gate="own"):
@@ -195,5 +195,10 @@ def settings(name, T=None, *, q=None, floor=None, gate="own"):
     return Settings(name, T, Q, variances, floor, box, gate, f["modern"]["gate_probability"], P0)
 
 
-_NOISE = scenario()["noise"]
-_RESOLUTIONS = resolutions()
+# A filter asks for these at every scan.
+@cache
+def _noise():
+    return scenario()["noise"]
+
+
+_resolutions = cache(resolutions)

@@ -12,11 +12,12 @@ import numpy as np
 from scipy.special import ndtr
 
 from ... import _checks
+from ..._data import read_lines
 from ...model.polar_radar import polar_radar_h
 from ...tracking.association import gnn_assign
 from ...tracking.management import TrackManager
 from . import chain, polar
-from .published import DATA, paths, settings
+from .published import paths, settings
 
 RUNS = 200
 SEED = 6
@@ -291,10 +292,9 @@ def summary(figure, variant):
 
 def _read(name, keys, kind):
     found = {}
-    with (DATA / name).open(encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            numbers = [int(row[key]) for key in keys]
-            key = (numbers[0], *(list(VARIANTS)[number - 1] for number in numbers[1:]))
-            found.setdefault(key, []).append([float(row[f.name]) for f in fields(kind)])
+    for row in csv.DictReader(read_lines("macaveiu2013", name)):
+        numbers = [int(row[key]) for key in keys]
+        key = (numbers[0], *(list(VARIANTS)[number - 1] for number in numbers[1:]))
+        found.setdefault(key, []).append([float(row[f.name]) for f in fields(kind)])
     names = [field.name for field in fields(kind)]
     return {key: dict(zip(names, np.array(rows).T, strict=True)) for key, rows in found.items()}

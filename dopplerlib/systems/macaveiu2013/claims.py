@@ -6,9 +6,8 @@ from ...evaluation.intervals import mean_interval, quantile_interval, share_inte
 from ...evaluation.verdicts import Readings
 from ...model.polar_radar import polar_radar_jacobian
 from . import chain, chain_study, crossing, lag, polar, regions, tracking, two_tones, waveforms
-from .published import DATA, KMH, paths, settings
+from .published import KMH, paths, settings
 
-CLAIMS = DATA / "claims.toml"
 RUNS = 200
 NOISES = (0.25, 0.5, 2.0)  # m: readings of a noise that is called large and not stated
 

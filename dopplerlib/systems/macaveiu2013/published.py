@@ -1,13 +1,13 @@
 """What the document states: its five paths and its settings, from ``data/macaveiu2013``."""
 
-import tomllib
 from dataclasses import dataclass, replace
-from functools import cache
-from pathlib import Path
+from functools import cache, partial
 
 import numpy as np
 
-DATA = Path(__file__).parents[3] / "data" / "macaveiu2013"
+from ..._data import data, read_toml
+
+data_file = partial(data, "macaveiu2013")
 KMH = 1 / 3.6  # m/s
 
 
@@ -89,7 +89,7 @@ class Path2D:
 
 @cache
 def _file():
-    return tomllib.loads((DATA / "scenario.toml").read_text(encoding="utf-8"))
+    return read_toml("macaveiu2013", "scenario.toml")
 
 
 def settings():

@@ -13,13 +13,13 @@ from .faults import faulty_filters, linear_filter, linear_world
 from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
 from .map_readings import ORIENTATIONS, Reading, figure3_readings, figure3_score
 from .noise_sweep import (
-    ERROR_LIMITS,
-    NOISE_LEVELS,
     Figure4,
     SweepReading,
+    error_limits,
     figure4,
     figure4_array,
     grid_points,
+    noise_levels,
 )
 from .phase_fit import fit_phases
 from .published import (
@@ -41,27 +41,23 @@ from .received_iq import FAULTS, Baseband, received
 from .simulated_iq import SIMULATED, read_simulated_iq, simulated_recording, write_simulated_iq
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
 from .sweep_readings import (
-    SCORED_LEVELS,
-    SWEEP_READINGS,
     dots_log_likelihood,
     dots_structure,
     figure4_readings,
     figure4_score,
     saved_figure4,
+    scored_levels,
+    sweep_readings,
 )
 from .tracking import Figure6, figure6
 from .white_noise import WalkFilter, walk_filter
 
 __all__ = [
-    "ERROR_LIMITS",
     "FAULTS",
-    "NOISE_LEVELS",
     "ORIENTATIONS",
     "RACE",
     "RACE_LEVELS",
-    "SCORED_LEVELS",
     "SIMULATED",
-    "SWEEP_READINGS",
     "Baseband",
     "Consistency",
     "EndToEnd",
@@ -83,6 +79,7 @@ __all__ = [
     "consistency_runs",
     "dots_log_likelihood",
     "dots_structure",
+    "error_limits",
     "faulty_filters",
     "figure3",
     "figure3_bound",
@@ -102,6 +99,7 @@ __all__ = [
     "linear_world",
     "matched_P0",
     "median_error",
+    "noise_levels",
     "position_bound",
     "position_bound_iq",
     "published_figure3",
@@ -119,12 +117,14 @@ __all__ = [
     "saved_figure4",
     "saved_race",
     "scenario",
+    "scored_levels",
     "shares_above",
     "signal_chain",
     "simulated_recording",
     "start_box",
     "start_misfit",
     "still_counts",
+    "sweep_readings",
     "switched_ekf",
     "table2",
     "table2_starts",

@@ -1,6 +1,7 @@
 """How the error of the start grows with the noise (Fig 4), under any reading of the text."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
@@ -12,16 +13,40 @@ from ...model.doppler import doppler_shift
 from ...model.radar_array import RadarArray
 from .published import figure4_settings
 
-_SETTINGS = figure4_settings()
-_NOISE, _GRID, _OURS = _SETTINGS["noise"], _SETTINGS["grid"], _SETTINGS["ours"]
-_ENDS = np.log10([_NOISE["lowest"], _NOISE["highest"]])
-# Variances of the levels of the figure, in Hz^2.
-NOISE_LEVELS = 10.0 ** (
-    _ENDS[0] + (_ENDS[1] - _ENDS[0]) * np.arange(_NOISE["levels"]) / (_NOISE["levels"] - 1)
-)
-# What the text says that the averaged errors stay below, in m and m/s.
-ERROR_LIMITS = _SETTINGS["limits"]["position"], _SETTINGS["limits"]["velocity"]
 _PLANE = [True, True, False, True, True, False]
+_settings = cache(figure4_settings)
+
+
+@cache
+def noise_levels():
+    """Return the variances of the noise levels of the figure.
+
+    Returns
+    -------
+    ndarray, shape (31,)
+        In Hz^2; read-only.
+    """
+    noise = _settings()["noise"]
+    low, high = np.log10([noise["lowest"], noise["highest"]])
+    levels = 10.0 ** (low + (high - low) * np.arange(noise["levels"]) / (noise["levels"] - 1))
+    levels.flags.writeable = False
+    return levels
+
+
+def error_limits():
+    """Return what the text says that the averaged errors stay below.
+
+    Returns
+    -------
+    position, velocity : float
+        In m and m/s.
+    """
+    limits = _settings()["limits"]
+    return limits["position"], limits["velocity"]
+
+
+def _ours(name):
+    return field(default_factory=lambda: _settings()["ours"][name])
 
 
 @dataclass(frozen=True)
@@ -53,13 +78,13 @@ class SweepReading:
     ``data/mittermaier2016/figure4.toml``.
     """
 
-    velocity: str = _OURS["velocity"]
-    speed: tuple = tuple(_OURS["speed"])
-    shared: bool = _OURS["shared"]
-    likelihood: str = _OURS["likelihood"]
-    spacing: float = _GRID["spacing"]
-    box: str = _OURS["box"]
-    axis: str = _OURS["axis"]
+    velocity: str = _ours("velocity")
+    speed: tuple = field(default_factory=lambda: tuple(_settings()["ours"]["speed"]))
+    shared: bool = _ours("shared")
+    likelihood: str = _ours("likelihood")
+    spacing: float = field(default_factory=lambda: _settings()["grid"]["spacing"])
+    box: str = _ours("box")
+    axis: str = _ours("axis")
 
 
 @dataclass(frozen=True)
@@ -128,18 +153,19 @@ def figure4(
     ((2, 2), True)
     """
     reading = SweepReading() if reading is None else reading
-    levels = list(range(len(NOISE_LEVELS)) if levels is None else levels)
-    if not all(isinstance(k, int | np.integer) and 0 <= k < len(NOISE_LEVELS) for k in levels):
+    settings, variance = _settings(), noise_levels()
+    levels = list(range(len(variance)) if levels is None else levels)
+    if not all(isinstance(k, int | np.integer) and 0 <= k < len(variance) for k in levels):
         raise ValueError(f"levels must be whole numbers from 0 to 30, got {levels}")
-    draws = _SETTINGS["velocities"]["in_figure"] if draws is None else draws
+    draws = settings["velocities"]["in_figure"] if draws is None else draws
     draws = _checks.whole_number("draws", draws)
     _checks.generator("rng", rng)
-    _checks.one_of("reading.box", reading.box, tuple(_OURS["boxes"]))
+    _checks.one_of("reading.box", reading.box, tuple(settings["ours"]["boxes"]))
     _checks.one_of("reading.axis", reading.axis, ("x", "y"))
 
-    T, samples = _SETTINGS["sampling"]["T"], _SETTINGS["sampling"]["samples"]
+    T, samples = settings["sampling"]["T"], settings["sampling"]["samples"]
     array = figure4_array(reading.axis)
-    streams = [child.spawn(1 + len(NOISE_LEVELS)) for child in rng.spawn(draws)]
+    streams = [child.spawn(1 + len(variance)) for child in rng.spawn(draws)]
     x = np.stack([_states(reading, own[0]) for own in streams])
     path = np.repeat(x[..., None, :], samples, axis=-2)
     if reading.likelihood == "moving":
@@ -149,7 +175,7 @@ def figure4(
     errors = []
     for k in progress_bar(levels, "noise level", progress):
         noise = np.stack([own[1 + k].standard_normal(clean.shape[1:]) for own in streams])
-        sigma_f = np.sqrt(NOISE_LEVELS[k])
+        sigma_f = np.sqrt(variance[k])
         z = clean + sigma_f * noise
         start = ml_start(z, array, sigma_f, T, box, reading.likelihood, workers=workers)
         errors.append(_sizes(start.x - x))
@@ -160,9 +186,9 @@ def figure4(
         unit = np.stack([mean_norm(P[..., part, part]).mean(axis=-1) for part in _PARTS])
     else:
         unit = np.full((2, draws), np.nan)
-    bounds = np.sqrt(NOISE_LEVELS[levels])[:, None, None] * unit
+    bounds = np.sqrt(variance[levels])[:, None, None] * unit
     parts = (values[:, i] for values in (mean, median, bounds) for i in (0, 1))
-    return Figure4(NOISE_LEVELS[levels], *parts)
+    return Figure4(variance[levels], *parts)
 
 
 _PARTS = (np.s_[:2], np.s_[3:5])
@@ -211,10 +237,10 @@ def figure4_array(axis=None):
     -------
     RadarArray
     """
-    settings = dict(_SETTINGS["array"])
+    settings = dict(_settings()["array"])
     if settings.pop("shape") != "linear":
         raise ValueError("array in figure4.toml must have the shape linear")
-    return RadarArray.linear(**settings, axis=_OURS["axis"] if axis is None else axis)
+    return RadarArray.linear(**settings, axis=_settings()["ours"]["axis"] if axis is None else axis)
 
 
 def grid_points(spacing=None):
@@ -235,11 +261,12 @@ def grid_points(spacing=None):
     >>> grid_points().shape
     (315, 2)
     """
-    spacing = _GRID["spacing"] if spacing is None else spacing
+    grid = _settings()["grid"]
+    spacing = grid["spacing"] if spacing is None else spacing
     spacing = _checks.positive_number("spacing", spacing)
     axes = [
         low + spacing * np.arange(int((high - low) / spacing + 1e-9) + 1)
-        for low, high in (_GRID["x"], _GRID["y"])
+        for low, high in (grid["x"], grid["y"])
     ]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
 
@@ -278,7 +305,7 @@ def _box(reading):
     """Return the bounds of the state; the first of the box is the distance from the array."""
     order = [0, 1, 3, 4] if reading.axis == "y" else [1, 0, 4, 3]
     box = np.zeros((2, 6))
-    box[:, order] = _OURS["boxes"][reading.box]
+    box[:, order] = _settings()["ours"]["boxes"][reading.box]
     return box
 
 

@@ -1,16 +1,15 @@
 """What the paper prints and draws, from ``data/mittermaier2016``."""
 
-import json
-import tomllib
 from dataclasses import dataclass
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 
+from ..._data import data, read_json, read_lines, read_toml
 from ...model.radar_array import RadarArray
 from ...model.scenario import Scenario
 
-DATA = Path(__file__).parents[3] / "data" / "mittermaier2016"
+data_file = partial(data, "mittermaier2016")
 
 
 @dataclass(frozen=True)
@@ -136,7 +135,7 @@ def scenario():
     -------
     Scenario
     """
-    return Scenario.from_toml(DATA / "scenario.toml")
+    return Scenario.from_toml(data_file("scenario.toml"))
 
 
 def table2():
@@ -146,7 +145,7 @@ def table2():
     -------
     Table2
     """
-    printed = _json("table2.json")
+    printed = read_json("mittermaier2016", "table2.json")
     names = ("x", "y", "z", "vx", "vy", "vz")
     return Table2(
         *(
@@ -163,14 +162,11 @@ def published_figure3():
     -------
     PublishedFigure3
     """
-    settings = tomllib.loads((DATA / "figure3.toml").read_text(encoding="utf-8"))
+    settings = read_toml("mittermaier2016", "figure3.toml")
     array, sampling = dict(settings["array"]), settings["sampling"]
     if array.pop("shape") != "linear":
         raise ValueError("array in figure3.toml must have the shape linear")
-    panels = [
-        np.genfromtxt(DATA / f"fig3_{side}.csv", delimiter=",", names=True)
-        for side in ("left", "right")
-    ]
+    panels = [_table(f"fig3_{side}.csv") for side in ("left", "right")]
     x, y = np.unique(panels[0]["x_m"]), np.unique(panels[0]["y_m"])
     error, flag = (
         np.reshape([panel[name] for panel in panels], (len(panels), len(x), len(y)))
@@ -199,9 +195,9 @@ def published_figure6():
     PublishedFigure6
     """
     T = scenario().T
-    errors = np.genfromtxt(DATA / "fig6_errors.csv", delimiter=",", names=True)
-    nis = np.genfromtxt(DATA / "fig6_nis.csv", delimiter=",", names=True)
-    geometry = _json("fig6_geometry.json")
+    errors = _table("fig6_errors.csv")
+    nis = _table("fig6_nis.csv")
+    geometry = read_json("mittermaier2016", "fig6_geometry.json")
     initial, markers = geometry["initial"], geometry["estimated_path_markers"]["markers"]
     start = table2().x_ml.copy()
     start[0] = initial["x_hat_implied_by_mle_marker_m"]["from_u"]
@@ -224,10 +220,7 @@ def published_figure4():
     -------
     PublishedFigure4
     """
-    tables = [
-        np.genfromtxt(DATA / f"fig4_{part}.csv", delimiter=",", names=True)
-        for part in ("position", "velocity")
-    ]
+    tables = [_table(f"fig4_{part}.csv") for part in ("position", "velocity")]
     variance, level = np.unique(tables[0]["variance_hz2"], return_inverse=True)
     dots = np.empty((2, len(variance), figure4_settings()["velocities"]["in_figure"]))
     for values, table in zip(dots, tables, strict=True):
@@ -243,7 +236,7 @@ def figure4_settings():
     dict
         See ``data/mittermaier2016/figure4.toml``; under ``ours`` what the paper leaves open.
     """
-    return tomllib.loads((DATA / "figure4.toml").read_text(encoding="utf-8"))
+    return read_toml("mittermaier2016", "figure4.toml")
 
 
 def signal_chain():
@@ -254,7 +247,7 @@ def signal_chain():
     dict
         Units are in the names; see ``data/mittermaier2016/signal_chain.toml``.
     """
-    return tomllib.loads((DATA / "signal_chain.toml").read_text(encoding="utf-8"))
+    return read_toml("mittermaier2016", "signal_chain.toml")
 
 
 def quoted():
@@ -265,8 +258,8 @@ def quoted():
     dict
         Units are in the names; see ``data/mittermaier2016/README.md``.
     """
-    return _json("table2.json")["quoted"]
+    return read_json("mittermaier2016", "table2.json")["quoted"]
 
 
-def _json(name):
-    return json.loads((DATA / name).read_text(encoding="utf-8"))
+def _table(name):
+    return np.genfromtxt(read_lines("mittermaier2016", name), delimiter=",", names=True)

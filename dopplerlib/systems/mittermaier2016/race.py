@@ -1,18 +1,17 @@
 """Section 3.2 of Mittermaier et al. (2016): is the bound attained? Every estimator against it."""
 
-import json
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from ... import _checks
+from ..._data import read_json
 from ...evaluation.intervals import Estimate, mean_interval, share_interval
 from ...signal import interpolation, phase
 from ...signal.frequency import ml_frequency, ml_frequency_dc
 from ...signal.laws import crlb_frequency_std
 from ...signal.synthesis import tone
-from .published import DATA
 
 RACE_SAMPLES, RACE_FS = 100, 10e3  # a window of 10 ms; ratios to the bound do not depend on fs
 RACE_LEVELS = (*range(-15, 16), 20, 25, 30, 35, 40)  # dB: fine where the thresholds are
@@ -200,7 +199,7 @@ def saved_race():
     -----
     Made by ``make iq-race``; see the README of data/mittermaier2016.
     """
-    saved = json.loads((DATA / "iq_race.json").read_text(encoding="utf8"))
+    saved = read_json("mittermaier2016", "iq_race.json")
     levels, windows = np.array(saved["snr_db"], dtype=float), saved["windows"]
     ends = [saved[end] for end in ("ratio", "low", "high")]
     ratio = {

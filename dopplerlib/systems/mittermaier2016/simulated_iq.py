@@ -3,19 +3,22 @@
 The files ``data/mittermaier2016/simulated_iq*`` are what `write_simulated_iq` writes.
 """
 
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
 
 from ... import _checks
+from ..._data import on_disk
 from ..._files import write_text
 from ...signal.recording import Recording, read_sigmf, write_sigmf
-from .published import DATA, scenario
+from .published import scenario
 from .received_iq import Baseband, received
 
 # Everything that the recording depends on, beside the scenario.
 SIMULATED = {"seed": 20160907, "fs": 2000.0, "snr_db": 27.0, "amplitude": 0.4, "truth_step": 0.02}
 _NAME = "simulated_iq"
+_FILES = f"{_NAME}.sigmf-meta", f"{_NAME}.sigmf-data", f"{_NAME}_truth.csv"
 _HEAD = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
 
 
@@ -64,18 +67,18 @@ def write_simulated_iq(folder):
     meta = write_sigmf(folder / _NAME, recording, "int16", description)
     rows = np.column_stack([time, truth])
     lines = [_HEAD, *(",".join(f"{value:.6f}" for value in row) for row in rows)]
-    table = folder / f"{_NAME}_truth.csv"
+    _, data, table = (folder / name for name in _FILES)
     write_text(table, "\n".join(lines) + "\n")
-    return [meta, folder / f"{_NAME}.sigmf-data", table]
+    return [meta, data, table]
 
 
-def read_simulated_iq(folder=DATA):
+def read_simulated_iq(folder=None):
     """Read the recording and its truth.
 
     Parameters
     ----------
-    folder : path-like
-        Where the three files are.
+    folder : path-like, optional
+        Where the three files are; those that come with the library if None.
 
     Returns
     -------
@@ -91,14 +94,16 @@ def read_simulated_iq(folder=DATA):
     ValueError
         If the recording is not sound, or its wavelength is not that of the scenario.
     """
-    folder = Path(folder)
-    recording = read_sigmf(folder / f"{_NAME}.sigmf-meta")
+    shipped = on_disk("mittermaier2016", *_FILES)
+    with shipped if folder is None else nullcontext(Path(folder)) as folder:
+        meta, _, table = (folder / name for name in _FILES)
+        recording = read_sigmf(meta)
+        rows = np.genfromtxt(table, delimiter=",", skip_header=1)
     array = scenario().array
     if not np.isclose(recording.wavelength, array.wavelength, rtol=1e-6):
         raise ValueError(
             f"the recording must have the wavelength {array.wavelength} m, "
             f"got {recording.wavelength}"
         )
-    table = np.genfromtxt(folder / f"{_NAME}_truth.csv", delimiter=",", skip_header=1)
     iq = Baseband(_checks.finite_complex("x", recording.x)[None], recording.fs, array)
-    return iq, table[:, 0], table[:, 1:]
+    return iq, rows[:, 0], rows[:, 1:]

@@ -1,49 +1,63 @@
 """Which reading of Fig 4 do the published dots support?"""
 
-import json
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
-from .noise_sweep import NOISE_LEVELS, Figure4, SweepReading
-from .published import DATA, figure4_settings
-
-_SETTINGS = figure4_settings()
-_COMPARED = _SETTINGS["ours"]["comparison"]
-_VELOCITIES = tuple(
-    SweepReading(kind, (low, high), spacing=_COMPARED["coarse"])
-    for kind, low, high in _COMPARED["velocities"]
-)
-_BOTH = tuple(
-    (shared, likelihood) for shared in (True, False) for likelihood in ("moving", "static")
-)
+from ..._data import read_json, read_lines
+from .noise_sweep import Figure4, SweepReading, noise_levels
+from .published import figure4_settings
 
 
-def _some(name):
-    return [_VELOCITIES[i] for i in _COMPARED[name]]
+@cache
+def sweep_readings():
+    """Return the readings of Fig 4 that are compared, and each of which is simulated.
+
+    Returns
+    -------
+    tuple of SweepReading
+        Every velocity with either likelihood, one draw for all points or one for each. Then, for
+        some of them, what else could be different: the grid of the text, other boxes, the array
+        turned.
+    """
+    settings = figure4_settings()
+    compared = settings["ours"]["comparison"]
+    velocities = [
+        SweepReading(kind, (low, high), spacing=compared["coarse"])
+        for kind, low, high in compared["velocities"]
+    ]
+    some = {
+        name: [velocities[i] for i in compared[name]]
+        for name in ("text_grid", "more_boxes", "turned")
+    }
+    likelihoods = ("moving", "static")
+    both = [(shared, likelihood) for shared in (True, False) for likelihood in likelihoods]
+    return (
+        *(replace(v, shared=s, likelihood=name) for v in velocities for s, name in both),
+        *(
+            replace(v, likelihood=name, spacing=settings["grid"]["spacing"])
+            for v in some["text_grid"]
+            for name in likelihoods
+        ),
+        *(
+            replace(v, shared=s, likelihood=name, box=box)
+            for v in some["more_boxes"]
+            for s, name in both
+            for box in ("approaching", "region")
+        ),
+        *(replace(v, axis="x") for v in some["turned"]),
+    )
 
 
-# Every velocity with either likelihood, one draw for all points or one for each. Then, for some of
-# them, what else could be different: the grid of the text, other boxes, the array turned.
-SWEEP_READINGS = (
-    *(replace(v, shared=s, likelihood=name) for v in _VELOCITIES for s, name in _BOTH),
-    *(
-        replace(v, likelihood=name, spacing=_SETTINGS["grid"]["spacing"])
-        for v in _some("text_grid")
-        for name in ("moving", "static")
-    ),
-    *(
-        replace(v, shared=s, likelihood=name, box=box)
-        for v in _some("more_boxes")
-        for s, name in _BOTH
-        for box in ("approaching", "region")
-    ),
-    *(replace(v, axis="x") for v in _some("turned")),
-)
-# Levels at which readings are compared.
-SCORED_LEVELS = tuple(_COMPARED["levels"])
-# Markers of the figure stand on a grid of this many m or m/s.
-STEP = _SETTINGS["drawing"]["step"]
+def scored_levels():
+    """Return the numbers of the noise levels at which readings are compared.
+
+    Returns
+    -------
+    tuple of int
+    """
+    return tuple(figure4_settings()["ours"]["comparison"]["levels"])
 
 
 @dataclass(frozen=True)
@@ -131,7 +145,8 @@ def dots_log_likelihood(model, position, velocity):
     between = (axes * np.maximum(size, 0)) @ axes.T
     S = np.kron(np.ones((levels, levels)), between) + np.kron(np.eye(levels), model.within)
     ours = S / model.draws
-    S = S + np.diag(STEP**2 / 12 / np.exp(2 * model.mean.ravel()))
+    step = figure4_settings()["drawing"]["step"]  # of the grid of markers, in m or m/s
+    S = S + np.diag(step**2 / 12 / np.exp(2 * model.mean.ravel()))
     error = (dots - model.mean[:, None]).transpose(0, 2, 1).reshape(-1, draws)
     # Mean and deviations of the sequences are independent; only the mean shares our error.
     average = error.mean(axis=1, keepdims=True)
@@ -166,7 +181,7 @@ def figure4_score(figure, published, *, rng, resamples=200):
     low, high : float
         Central 95 % of the score when our sequences are drawn again from themselves.
     """
-    rows = [int(np.argmin(np.abs(NOISE_LEVELS - variance))) for variance in figure.variance]
+    rows = [int(np.argmin(np.abs(noise_levels() - variance))) for variance in figure.variance]
     dots = published.position[rows], published.velocity[rows]
     draws = figure.position.shape[1]
 
@@ -192,7 +207,7 @@ def figure4_readings(again=False):
     list of tuple
         The reading, its score in nats, and the ends of its 95 % interval.
     """
-    saved = json.loads((DATA / "ourfigure4_readings.json").read_text(encoding="utf-8"))
+    saved = read_json("mittermaier2016", "ourfigure4_readings.json")
     rows = []
     for row in saved["again" if again else "readings"]:
         values = tuple(row.pop(name) for name in ("score", "low", "high"))
@@ -208,6 +223,7 @@ def saved_figure4():
     Figure4
         All levels and points of the grid, as many draws as the figure has markers at a level.
     """
-    table = np.genfromtxt(DATA / "ourfigure4.csv", delimiter=",", names=True)
-    parts = [table[name].reshape(len(NOISE_LEVELS), -1) for name in table.dtype.names[2:]]
-    return Figure4(NOISE_LEVELS, *parts)
+    lines = read_lines("mittermaier2016", "ourfigure4.csv")
+    table, levels = np.genfromtxt(lines, delimiter=",", names=True), noise_levels()
+    parts = [table[name].reshape(len(levels), -1) for name in table.dtype.names[2:]]
+    return Figure4(levels, *parts)

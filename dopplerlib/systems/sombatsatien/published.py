@@ -1,17 +1,17 @@
 """What the report states, from ``data/sombatsatien``."""
 
-import tomllib
 from dataclasses import dataclass
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 
 from ... import _checks
+from ..._data import data, read_toml
 from ...model.doppler import doppler_shift
 from ...model.radar_array import RadarArray
 from ...model.scenario import Scenario
 
-DATA = Path(__file__).parents[3] / "data" / "sombatsatien"
+data_file = partial(data, "sombatsatien")
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def scenario(plane="z"):
         If `plane` is neither.
     """
     _checks.one_of("plane", plane, ("z", "x"))
-    s = Scenario.from_toml(DATA / "scenario.toml")
+    s = Scenario.from_toml(data_file("scenario.toml"))
     if plane == "z":
         return s
     radius = float(np.linalg.norm(s.array.positions[0]))
@@ -127,4 +127,4 @@ def reported_record():
 
 
 def _tables():
-    return tomllib.loads((DATA / "reported.toml").read_text(encoding="utf-8"))
+    return read_toml("sombatsatien", "reported.toml")

@@ -18,7 +18,7 @@ from .modern import (
     supposed_world,
 )
 from .noise import residual_variance, updated_residual
-from .published import DATA, VelocityPath, chosen, stated, velocity_path
+from .published import VelocityPath, chosen, data_file, stated, velocity_path
 from .study import (
     Study,
     cell_measures,
@@ -33,7 +33,6 @@ from .windows import WindowTable, choose_window, cumulative_error, window_table
 
 __all__ = [
     "ALGORITHMS",
-    "DATA",
     "AlgorithmRuns",
     "FilteredDoppler",
     "Study",
@@ -45,6 +44,7 @@ __all__ = [
     "choose_window",
     "chosen",
     "cumulative_error",
+    "data_file",
     "doppler_filter",
     "error_correlation",
     "evidence",

@@ -1,16 +1,16 @@
 """What the document states, what this book fills in, and the paths that follow from both."""
 
-import tomllib
 from dataclasses import dataclass
-from pathlib import Path
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 
 from ... import _checks
+from ..._data import data, read_toml
 from ...signal.synthesis import velocity_profile
 
-DATA = Path(__file__).parents[3] / "data" / "valarmathi"
+data_file = partial(data, "valarmathi")
 PATHS = ("path 1", "path 2", "fighter")
 
 
@@ -128,4 +128,4 @@ def velocity_path(name):
 
 
 def _tables():
-    return tomllib.loads((DATA / "scenario.toml").read_text(encoding="utf-8"))
+    return read_toml("valarmathi", "scenario.toml")

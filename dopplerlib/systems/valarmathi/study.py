@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ... import _checks
+from ..._data import read_lines
 from ...evaluation.intervals import Estimate, share_interval
 from .algorithms import ALGORITHMS, run_algorithms
-from .published import DATA, PATHS, chosen, stated
+from .published import PATHS, chosen, stated
 from .windows import window_table
 
 SEED = 3
@@ -159,7 +160,7 @@ def saved_study():
     -------
     Study
     """
-    rows = np.loadtxt(DATA / "study.csv", delimiter=",", skiprows=1)
+    rows = np.loadtxt(read_lines("valarmathi", "study.csv"), delimiter=",", skiprows=1)
     snrs_db = np.unique(rows[:, 1])
     rows = rows.reshape(len(PATHS), len(snrs_db), len(ALGORITHMS), -1, rows.shape[1])
     return Study(PATHS, snrs_db, {name: rows[..., 3 + i] for i, name in enumerate(MEASURES)})
@@ -174,7 +175,7 @@ def failed_shares():
         By path and algorithm: signal-to-noise ratios in dB, and at each the share of runs whose
         error of the whole record is more than `failed_rmse` of `chosen`, with its interval.
     """
-    rows = np.loadtxt(DATA / "cliff.csv", delimiter=",", skiprows=1)
+    rows = np.loadtxt(read_lines("valarmathi", "cliff.csv"), delimiter=",", skiprows=1)
     shares = {}
     for number, path in enumerate(PATHS, start=1):
         for algorithm in ALGORITHMS:

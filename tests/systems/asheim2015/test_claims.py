@@ -5,11 +5,11 @@ import pytest
 
 from dopplerlib.evaluation.claims import read_claims
 from dopplerlib.systems.asheim2015.claims import stand_in_evidence
-from dopplerlib.systems.asheim2015.published import DATA
+from dopplerlib.systems.asheim2015.published import data_file
 from tests.claims import check_flips, check_references, check_verdicts, evidence_of
 
 DOCUMENT = "asheim2015"
-STAND_IN = read_claims(DATA / "stand_in_claims.toml")
+STAND_IN = read_claims(data_file("stand_in_claims.toml"))
 
 
 @pytest.fixture(scope="module")
@@ -37,4 +37,6 @@ def test_the_simulated_walks_are_judged_apart(monkeypatch):
     check_verdicts(DOCUMENT, found)
     check_flips(DOCUMENT, found)
     check_references(DOCUMENT)
-    assert not {one.id for one in STAND_IN} & {one.id for one in read_claims(DATA / "claims.toml")}
+    assert not {one.id for one in STAND_IN} & {
+        one.id for one in read_claims(data_file("claims.toml"))
+    }

@@ -65,7 +65,7 @@ def test_every_slip_says_what_we_do_about_it_and_which_chapter_treats_it():
     assert len(slips) == len({slip["found"] for slip in slips}) == 32
     labels = {
         label: path.stem
-        for path in (thesis.published.DATA.parents[1] / "book").glob("asheim*.ipynb")
+        for path in (thesis.published.data_file().parents[1] / "book").glob("asheim*.ipynb")
         for label in re.findall(r"\((sec-[\w-]+)\)=", path.read_text(encoding="utf-8"))
     }
     for slip in slips:

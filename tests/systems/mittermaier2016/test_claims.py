@@ -11,7 +11,7 @@ import pytest
 from dopplerlib import RadarArray, constant_velocity, crlb, doppler_shift
 from dopplerlib.evaluation.deviations import read_deviations
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.published import DATA
+from dopplerlib.systems.mittermaier2016.published import data_file
 from tests.claims import (
     ROOT,
     check_flips,
@@ -52,7 +52,7 @@ def test_every_part_of_the_paper_has_claims():
 
 def test_a_deviation_leads_to_a_cell_and_to_claims():
     ids = [claim.id for claim in claims_of(DOCUMENT)]
-    for one in read_deviations(DATA / "deviations.toml").entries:
+    for one in read_deviations(data_file("deviations.toml")).entries:
         assert set(one.claims) <= set(ids), one.id
         notebook = json.loads((ROOT / "book" / f"{one.page}.ipynb").read_text(encoding="utf-8"))
         assert one.cell in [cell["id"] for cell in notebook["cells"]], one.id
@@ -60,7 +60,7 @@ def test_a_deviation_leads_to_a_cell_and_to_claims():
 
 def test_every_underdetermined_claim_is_a_gap_that_is_listed():
     listed = {
-        name for one in read_deviations(DATA / "deviations.toml").entries for name in one.claims
+        name for one in read_deviations(data_file("deviations.toml")).entries for name in one.claims
     }
     for claim in claims_of(DOCUMENT):
         if claim.verdict == "underdetermined":

@@ -11,7 +11,7 @@ from scipy.stats import multivariate_normal
 
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems.mittermaier2016.noise_sweep import grid_points, mean_norm
-from dopplerlib.systems.mittermaier2016.sweep_readings import STEP, Structure
+from dopplerlib.systems.mittermaier2016.sweep_readings import Structure
 
 DATA = Path(__file__).resolve().parents[3] / "data" / "mittermaier2016"
 COARSE = paper.SweepReading(spacing=0.1)
@@ -30,8 +30,10 @@ def test_the_grid_is_that_of_the_text():
 
 def test_the_figure_has_31_levels_of_20_dots_and_passes_one_of_its_limits():
     dots = paper.published_figure4()
-    assert paper.ERROR_LIMITS == (0.3, 0.2)
-    np.testing.assert_allclose(dots.variance, paper.NOISE_LEVELS, rtol=1e-4)  # printed to 5 digits
+    assert paper.error_limits() == (0.3, 0.2)
+    np.testing.assert_allclose(
+        dots.variance, paper.noise_levels(), rtol=1e-4
+    )  # printed to 5 digits
     assert dots.position.shape == dots.velocity.shape == (31, 20)
     assert dots.position.max() < 0.3
     assert 0.2 < dots.velocity.max() < 0.204
@@ -144,7 +146,8 @@ def test_the_likelihood_is_that_of_independent_normal_sequences():
     )
     dots = 0.1 * synthetic(np.random.default_rng(3), model.between, model.within, 5, 3)
     S = np.block([[model.between + (i == j) * model.within for j in range(3)] for i in range(3)])
-    S = S + np.diag(STEP**2 / 12 / np.exp(2 * model.mean.ravel()))
+    step = paper.figure4_settings()["drawing"]["step"]
+    S = S + np.diag(step**2 / 12 / np.exp(2 * model.mean.ravel()))
     expected = sum(
         multivariate_normal.logpdf(np.log(dots[:, :, d].T).ravel(), model.mean.ravel(), S)
         for d in range(5)
@@ -161,7 +164,8 @@ def test_the_error_of_our_own_mean_is_shared_by_all_sequences():
     )
     dots = 0.1 * synthetic(np.random.default_rng(3), model.between, model.within, 5, 3)
     S = np.block([[model.between + (i == j) * model.within for j in range(3)] for i in range(3)])
-    rounding = np.diag(STEP**2 / 12 / np.exp(2 * model.mean.ravel()))
+    step = paper.figure4_settings()["drawing"]["step"]
+    rounding = np.diag(step**2 / 12 / np.exp(2 * model.mean.ravel()))
     # One big Gaussian of all dots: S of its own for each sequence, S / 7 of the mean in common.
     joint = np.kron(np.eye(5), S + rounding) + np.kron(np.ones((5, 5)), S / 7)
     expected = multivariate_normal.logpdf(
@@ -177,7 +181,7 @@ def test_of_two_readings_the_one_that_made_the_dots_scores_higher():
     # Twelve sequences are enough: the scores are a hundred nats apart, their intervals some tens.
     truth, again = run(levels, seed=1), run(levels, 12, seed=3)
     other = run(levels, 12, seed=2, shared=False)
-    dots = paper.PublishedFigure4(paper.NOISE_LEVELS, *np.full((2, 31, 20), np.nan))
+    dots = paper.PublishedFigure4(paper.noise_levels(), *np.full((2, 31, 20), np.nan))
     dots.position[levels], dots.velocity[levels] = truth.position, truth.velocity
     scores = [paper.figure4_score(r, dots, rng=np.random.default_rng(4)) for r in (again, other)]
     assert scores[0][1] > scores[1][2]  # the intervals do not touch
@@ -197,14 +201,14 @@ def test_the_saved_study_is_what_the_seed_gives():
 
 def test_the_saved_scores_are_those_of_all_readings_and_what_the_seed_gives():
     scored = paper.figure4_readings()
-    assert {row[0] for row in scored} == set(paper.SWEEP_READINGS)
+    assert {row[0] for row in scored} == set(paper.sweep_readings())
     assert all(low <= high for _, _, low, high in scored)
     stored = json.loads((DATA / "ourfigure4_readings.json").read_text())
-    assert stored["levels"] == list(paper.SCORED_LEVELS)
-    reading = paper.SWEEP_READINGS[1]  # a static one: the search is several times faster
+    assert stored["levels"] == list(paper.scored_levels())
+    reading = paper.sweep_readings()[1]  # a static one: the search is several times faster
     assert reading.likelihood == "static"
     again = paper.figure4(
-        paper.SCORED_LEVELS,
+        paper.scored_levels(),
         stored["draws"],
         rng=np.random.default_rng(stored["seed"]),
         reading=reading,

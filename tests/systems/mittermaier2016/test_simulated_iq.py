@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.published import DATA
+from dopplerlib.systems.mittermaier2016.published import data_file
 
+DATA = data_file()
 README = (DATA / "README.md").read_text(encoding="utf-8")
 
 

@@ -34,7 +34,7 @@ def table():
 def lines(name, cell):
     """Return the rows of one cell in a file, as text without path and ratio."""
     head = ",".join(cell) + ","
-    rows = (system.DATA / name).read_text(encoding="utf-8").splitlines()[1:]
+    rows = system.published.data_file(name).read_text(encoding="utf-8").splitlines()[1:]
     return [row.removeprefix(head).split(",") for row in rows if row.startswith(head)]
 
 
@@ -42,7 +42,7 @@ def test_the_study_covers_every_path_ratio_and_algorithm_with_enough_runs(study)
     assert study.paths == PATHS
     np.testing.assert_array_equal(study.snrs_db, made.SNRS_DB)
     assert (study.snrs_db[0], study.snrs_db[-1], np.ptp(np.diff(study.snrs_db))) == (-10, 40, 0)
-    rows = np.loadtxt(system.DATA / "study.csv", delimiter=",", skiprows=1)
+    rows = np.loadtxt(system.published.data_file("study.csv"), delimiter=",", skiprows=1)
     keys, counts = np.unique(rows[:, :3], axis=0, return_counts=True)
     assert len(keys) == len(PATHS) * len(made.SNRS_DB) * len(system.ALGORITHMS)
     assert set(counts) == {made.RUNS} and made.RUNS >= 100
