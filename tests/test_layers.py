@@ -10,6 +10,7 @@ LIBRARY = Path(__file__).resolve().parents[1] / "dopplerlib"
 ORDER = [
     "_data",
     "_checks",
+    "_compile",
     "_progress",
     "_files",
     "kernels",

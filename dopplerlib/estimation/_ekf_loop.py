@@ -5,20 +5,15 @@ so that a loop over lanes becomes vector instructions. No operation crosses lane
 reordered, so a run gives the same bits alone and among ten thousand.
 """
 
-import hashlib
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 from numba import njit
 
+from .._compile import cached_njit, fingerprint
 from ..kernels import ekf as kernel
 
 LANES = 16
-
-# numba's cache watches the file of the compiled function only. As a constant inside it, the
-# fingerprint of the kernels makes a new kernel a new function.
-_FINGERPRINT = hashlib.sha256(Path(kernel.__file__).read_bytes()).hexdigest()
 
 _PREDICTED = kernel.ROWS  # the predicted covariance, kept in case the gate is closed
 _ROWS = kernel.ROWS + 21
@@ -66,14 +61,14 @@ def _unpack(work, lanes, lane, first, matrix):
 @cache
 def compiled(lanes):
     """Return the loop for `lanes` runs at a time."""
-    fingerprint = _FINGERPRINT
+    compiled_in = fingerprint(kernel)
 
-    @njit(nogil=True, error_model="numpy", cache=True)
+    @cached_njit
     def filter_records(
         z, positions, doppler_per_speed, variance, T, Q, x0, P0, lower, upper,
         x, P, innovation, S, nis, updated,
     ):  # fmt: skip
-        fingerprint  # noqa: B018  (see _FINGERPRINT)
+        compiled_in  # noqa: B018  (see fingerprint)
         runs, samples, sensors = z.shape
         work = np.zeros(_ROWS * lanes)
         sensor = np.zeros((sensors, kernel.SENSOR_ROWS * lanes))

@@ -13,12 +13,9 @@ One run goes through four steps:
 Costs are chi-square: sums of squared residuals over their standard deviations.
 """
 
-import hashlib
-from pathlib import Path
-
 import numpy as np
-from numba import njit
 
+from .._compile import cached_njit, fingerprint
 from ..kernels import doppler as kernel
 from . import _ml_grid, _ml_refine, _ml_valley
 from ._ml_grid import STARTS, lowest_minima, project, scan
@@ -196,22 +193,15 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
                 break
 
 
-def _cached(fingerprint):
-    """Return `_search`, compiled once for all processes.
+def _cached(compiled_in):
+    """Return `_search`, compiled once for all processes."""
 
-    numba's cache watches this file only, and the variables of an enclosing function: as one of
-    them, the fingerprint of all that is compiled in makes a change there a new function.
-    """
-
-    @njit(nogil=True, error_model="numpy", cache=True)
+    @cached_njit
     def search(*arguments):
-        fingerprint  # noqa: B018
+        compiled_in  # noqa: B018  (see fingerprint)
         _search(*arguments)
 
     return search
 
 
-_PARTS = (kernel, _ml_grid, _ml_refine, _ml_valley)
-search = _cached(
-    "".join(hashlib.sha256(Path(part.__file__).read_bytes()).hexdigest() for part in _PARTS)
-)
+search = _cached(fingerprint(kernel, _ml_grid, _ml_refine, _ml_valley))

@@ -13,6 +13,8 @@ Frequencies are counted in bins of the unpadded transform, u = f n / fs.
 import numpy as np
 from numba import njit
 
+from .._compile import cached_njit
+
 BLOCK = 16  # samples that share a phase; each of their sums is independent of the other five
 # 3 dB: how far a peak may rise above its value on the grid. A tone's rises by 1.5 dB; the rest is
 # for noise.
@@ -201,4 +203,4 @@ def search(X, re, im, firsts, n, low, high, circular, u, power):
                     u[w], power[w] = peak, height
 
 
-compiled = njit(nogil=True, error_model="numpy", cache=True)(search)
+compiled = cached_njit(search)

@@ -3,11 +3,12 @@
 import numpy as np
 from numba import njit
 
-options = dict(nogil=True, error_model="numpy", cache=True)
+from ..._compile import cached_njit
+
 FIXED, OWN, FUSED = 0, 1, 2
 
 
-@njit(**options)
+@njit(nogil=True, error_model="numpy")
 def _place(nodes, value):
     """Return the interval of the nodes that holds a value, and how far in it the value is."""
     last = len(nodes) - 1
@@ -21,7 +22,7 @@ def _place(nodes, value):
     return i, (value - nodes[i]) / (nodes[i + 1] - nodes[i])
 
 
-@njit(**options)
+@cached_njit
 def choose(a, snr_db, a_nodes, snr_nodes, log_table, log_windows):
     """Return the number of the window that is nearest to the interpolated table, in logarithms."""
     i, u = _place(a_nodes, abs(a))
@@ -131,4 +132,4 @@ def filter_pair(
                     )
 
 
-compiled = njit(**options)(filter_pair)
+compiled = cached_njit(filter_pair)

@@ -3,10 +3,12 @@
 import numpy as np
 from numba import njit
 
-options = dict(nogil=True, fastmath=True, error_model="numpy", cache=True)
+from ..._compile import cached_njit
+
+_inner = njit(nogil=True, fastmath=True, error_model="numpy")
 
 
-@njit(**options)
+@_inner
 def _sums(re, im, c, s, old_re, old_im, new_re, new_im):
     """Add one sample to the sums; in two loops, for with more arrays the compiler gives up."""
     for k in range(len(c)):
@@ -15,7 +17,7 @@ def _sums(re, im, c, s, old_re, old_im, new_re, new_im):
         new_im[k] = old_im[k] + (re * s[k] + im * c[k])
 
 
-@njit(**options)
+@_inner
 def _heights(new_re, new_im, old_re, old_im, height):
     for k in range(len(height)):
         a, b = new_re[k] - old_re[k], new_im[k] - old_im[k]
@@ -72,4 +74,4 @@ def slide(re, im, wave_re, wave_im, windows, first, place, power):
                 power[w, r, m - first] = (middle - 0.25 * (left - right) * shift) ** 2
 
 
-compiled = njit(**options)(slide)
+compiled = cached_njit(slide, fastmath=True)

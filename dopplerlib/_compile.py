@@ -1,0 +1,53 @@
+"""Compile with numba, and keep what comes out wherever there is a place for it."""
+
+import hashlib
+from contextlib import suppress
+from pickle import UnpicklingError
+
+from numba import njit
+from numba.core.caching import FunctionCache
+
+
+def cached_njit(function=None, **options):
+    """Compile a function when it is first called, once for all processes if that can be.
+
+    numba itself refuses to compile where its cache has no place: a package that cannot be written
+    to beside a home that cannot, a package without sources. Here such a function is compiled in
+    every process.
+    """
+    if function is None:
+        return lambda function: cached_njit(function, **options)
+    dispatcher = njit(nogil=True, error_model="numpy", **options)(function)
+    # A plain function, with NUMBA_DISABLE_JIT, has nothing to keep.
+    if dispatcher is not function:
+        # No place, or no source: as a file (OSError) or in the zip file (KeyError, ValueError).
+        with suppress(RuntimeError, OSError, KeyError, ValueError):
+            dispatcher._cache = _Cache(function)
+    return dispatcher
+
+
+def fingerprint(*modules):
+    """Return what changes with the text, or the byte code, of any of these modules.
+
+    numba's cache watches the file of the compiled function only, and the variables of an enclosing
+    function: as one of them, the fingerprint of what is compiled in makes a change there a new
+    function.
+    """
+    # The loader knows where a module comes from; it need not be a file.
+    parts = (m.__spec__.loader.get_data(m.__spec__.origin) for m in modules)
+    return "".join(hashlib.sha256(part).hexdigest() for part in parts)
+
+
+class _Cache(FunctionCache):
+    """numba's cache, for which a place that fails later on is no error either."""
+
+    def load_overload(self, sig, target_context):
+        with suppress(OSError):
+            try:
+                return super().load_overload(sig, target_context)
+            except (EOFError, UnpicklingError):  # a file was cut short
+                self.flush()
+
+    def save_overload(self, sig, data):
+        with suppress(OSError):
+            super().save_overload(sig, data)
