@@ -7,7 +7,6 @@ import numba
 import pytest
 
 import dopplerlib
-from dopplerlib import _compile
 from dopplerlib._compile import cached_njit, fingerprint
 from dopplerlib.estimation import imm, smoother
 
@@ -40,9 +39,8 @@ def source(tmp_path):
 
 def test_only_one_function_of_the_library_asks_numba_to_cache():
     pattern = re.compile(r"cache=True|enable_caching|FunctionCache")
-    asking = {
-        path.name for path in PACKAGE.rglob("*.py") if pattern.search(path.read_text("utf-8"))
-    }
+    texts = {path.name: path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
+    asking = {name for name, text in texts.items() if pattern.search(text)}
     assert asking == {"_compile.py"}
 
 
@@ -53,10 +51,11 @@ def test_what_was_compiled_is_found_again(source):
 
 @pytest.mark.parametrize("where", ["gone.py", "archive.zip/module.py", "wheel.whl/module.py"])
 def test_a_function_without_a_source_is_compiled_all_the_same(tmp_path, where):
-    assert kept(tmp_path / where) == (0, 0)
+    for _ in range(2):
+        assert kept(tmp_path / where) == (0, 1)
 
 
-def test_a_place_that_fails_later_on_is_done_without(source, monkeypatch):
+def test_a_place_that_fails_later_on_is_done_without(source):
     compiled = cached_njit(function(source))
     (source.parent / "__pycache__").rmdir()
     (source.parent / "__pycache__").write_bytes(b"")
@@ -80,4 +79,3 @@ def test_nothing_is_compiled_where_numba_is_told_not_to(source, monkeypatch):
 def test_the_fingerprint_is_that_of_the_modules():
     assert fingerprint(imm) != fingerprint(smoother)
     assert fingerprint(imm, smoother) == fingerprint(imm) + fingerprint(smoother)
-    assert _compile.fingerprint(imm) == fingerprint(imm)
