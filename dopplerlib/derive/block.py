@@ -1,11 +1,11 @@
 """A block: a short program in symbols, from which the printers make code."""
 
-from dataclasses import dataclass
-
 import sympy as sp
 
+from .._records import record
 
-@dataclass(frozen=True)
+
+@record
 class Stage:
     """Named assignments that may use each other's names in order, and all earlier stages'."""
 
@@ -13,7 +13,7 @@ class Stage:
     assignments: list
 
 
-@dataclass(frozen=True)
+@record
 class Block:
     """Inputs, stages of assignments, outputs: a straight line without loops or branches.
 

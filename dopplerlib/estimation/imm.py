@@ -1,14 +1,13 @@
 """The interacting multiple model estimator: several Kalman filters that share one target."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 from .linear_kalman import _update
 
 
-@dataclass(frozen=True)
+@record
 class ImmTrack:
     """Estimates of a record by several models, after the updates.
 

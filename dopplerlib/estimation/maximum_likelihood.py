@@ -2,11 +2,11 @@
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 
 import numpy as np
 
 from .. import _checks
+from .._records import record
 from ..model.information import SINGULAR, inverse_information
 from ..model.radar_array import RadarArray
 from .extended_kalman import _measurements
@@ -20,7 +20,7 @@ _POINTS = {"static": {0: 1, 1: 64, 2: 16, 3: 11}, "moving": {0: 1, 1: 64, 2: 24,
 _WINDOW = 0.25
 
 
-@dataclass(frozen=True)
+@record
 class Start:
     """Maximum-likelihood estimates; leading axes are those of the measurements.
 
@@ -117,7 +117,7 @@ def ml_start(z, array, sigma_f, T, box, likelihood="moving", *, at="first", work
     z = _measurements(z, array)
     T = _checks.positive_number("T", T)
     sigma_f = _checks.deviation("sigma_f", sigma_f)
-    deviations = np.ascontiguousarray(_checks.each_run("sigma_f", sigma_f, z.shape[-2:], ()))
+    deviations = np.ascontiguousarray(_checks.each_run("sigma_f", sigma_f, z.shape[-2:], ())).view()
     lower, upper = _box(box)
     _checks.one_of("likelihood", likelihood, ("moving", "static"))
     _checks.one_of("at", at, ("first", "last"))
@@ -146,6 +146,8 @@ def ml_start(z, array, sigma_f, T, box, likelihood="moving", *, at="first", work
     points = _POINTS["moving" if moving else "static"][int(free[:3].sum())]
     grid, shape = _grid(lower, upper, center, radius, points)
     z = np.ascontiguousarray(z).reshape(runs, samples, sensors)
+    # Whether an array may be written to is part of its type: numba would compile once for each.
+    z.flags.writeable = deviations.flags.writeable = False
     x, second_x = np.empty((runs, 6)), np.empty((runs, 6))
     information = np.empty((runs, 6, 6))
     cost, second_cost = np.empty(runs), np.empty(runs)

@@ -1,14 +1,13 @@
 """A radial velocity as a sequential update of a position filter, as a pseudo-measurement."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 from .linear_kalman import _check_leading, _update
 
 
-@dataclass(frozen=True)
+@record
 class RadialVelocity:
     """The terms of a radial-velocity update.
 

@@ -1,11 +1,11 @@
 """What a filter returns."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from .._records import record
 
-@dataclass(frozen=True)
+
+@record
 class Track:
     """Estimates of a record, all at the times of the measurements and after their update.
 

@@ -1,11 +1,10 @@
 """What to test before believing a Doppler filter: eight checks that need nobody's word."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.stats import chi2
 
 from .. import _checks
+from .._records import record
 from ..estimation.linear_kalman import kf_predict, kf_update
 from ..kernels.doppler import doppler_shift as shift_kernel
 from ..model.doppler import doppler_jacobian, doppler_shift
@@ -17,7 +16,7 @@ _STEP = 1e-30  # of the complex step: it cancels no digits, so it may be as smal
 _SMALL = 1e-6  # shrinks noise and start until the filter is linear to as many digits
 
 
-@dataclass(frozen=True)
+@record
 class Check:
     """One check of a filter and its outcome.
 

@@ -1,14 +1,16 @@
 """The claims of a document, one by one."""
 
 import tomllib
-from dataclasses import dataclass, fields
+from dataclasses import fields
+
+from .._records import record
 
 VERDICTS = ("reproduced", "typical", "atypical", "contradicted", "underdetermined")
 KINDS = ("deterministic", "random", "relation")
 RELATIONS = ("<", "<=", ">", ">=")
 
 
-@dataclass(frozen=True)
+@record
 class Claim:
     """One claim of a document, as its ``claims.toml`` tells it.
 
@@ -29,7 +31,7 @@ class Claim:
         Chapter and cell that show it.
     test : str
         The test that would fail if it were otherwise, as ``path::name``.
-    published : float or list of float, optional
+    published : float or tuple of float, optional
         The number printed, or the limit of a relation. None if it is a curve or a statistic of
         one, for which the evidence brings the number.
     unit : str
@@ -50,7 +52,7 @@ class Claim:
     page: str
     cell: str
     test: str
-    published: float | list | None = None
+    published: float | tuple | None = None
     unit: str = ""
     rounding: float = 0.0
     relation: str | None = None

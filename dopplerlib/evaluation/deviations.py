@@ -1,12 +1,14 @@
 """Where a document leaves something open or contradicts itself, and what was chosen instead."""
 
 import tomllib
-from dataclasses import dataclass, fields
+from dataclasses import fields
+
+from .._records import record
 
 KINDS = ("gap", "contradiction", "misprint")
 
 
-@dataclass(frozen=True)
+@record
 class Deviation:
     """One place at which a document cannot be followed to the letter.
 
@@ -24,7 +26,7 @@ class Deviation:
         What is done here.
     page, cell : str
         Chapter and cell where it matters.
-    claims : list of str, optional
+    claims : tuple of str
         Claims that it bears on.
     """
 
@@ -38,7 +40,7 @@ class Deviation:
     claims: tuple = ()
 
 
-@dataclass(frozen=True)
+@record
 class Deviations:
     """Deviations that a notebook shows as a table, with links to the cells where they matter.
 

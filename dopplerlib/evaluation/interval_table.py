@@ -1,15 +1,14 @@
 """Medians or means with their intervals, as a table for a page."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from .._records import record
 from .intervals import mean_interval, quantile_interval, share_interval
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-@dataclass(frozen=True)
+@record
 class IntervalTable:
     """Medians, or means, over runs that a notebook shows as a table.
 

@@ -1,13 +1,12 @@
 """Numbers with their Monte Carlo interval: means, shares, quantiles of independent runs."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 
 
-@dataclass(frozen=True)
+@record
 class Estimate:
     """A number that was estimated from runs, and the interval that its uncertainty leaves.
 

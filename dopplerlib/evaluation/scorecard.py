@@ -1,15 +1,15 @@
 """The verdicts on all claims of a document, as a table for a page."""
 
 from collections import Counter
-from dataclasses import dataclass
 
 import numpy as np
 
+from .._records import record
 from .claims import VERDICTS
 from .intervals import Estimate
 
 
-@dataclass(frozen=True)
+@record
 class Scorecard:
     """Judgments that a notebook shows as a table, with links to the cells behind them.
 

@@ -1,10 +1,9 @@
 """The verdict on a claim: what the document says beside what we find."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 from .claims import Claim
 from .intervals import Estimate, share_interval
 
@@ -14,7 +13,7 @@ _TAIL = 0.025
 _HOLDS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal}
 
 
-@dataclass(frozen=True)
+@record
 class Draws:
     """Evidence on the outcome of a random run: what it is in many runs of ours.
 
@@ -30,7 +29,7 @@ class Draws:
     published: float | None = None
 
 
-@dataclass(frozen=True)
+@record
 class Readings:
     """Evidence on a claim that leaves something open: one piece for each way to read it.
 
@@ -43,7 +42,7 @@ class Readings:
     by_name: dict
 
 
-@dataclass(frozen=True)
+@record
 class Judgment:
     """A verdict and what it rests on.
 
@@ -55,7 +54,7 @@ class Judgment:
         See `Claim`.
     ours : Estimate or float or ndarray
         Our number; of a random run the median, with the interval in which 95 % of ours lie.
-    published : float or list of float
+    published : float or tuple of float
         The number that it was compared with.
     percentile : Estimate, optional
         Share of our runs below the published one, in percent, with its Monte Carlo interval.
@@ -68,7 +67,7 @@ class Judgment:
     claim: Claim
     verdict: str
     ours: Estimate | float | np.ndarray
-    published: float | list
+    published: float | tuple
     percentile: Estimate | None = None
     reading: str | None = None
     decided: bool = True

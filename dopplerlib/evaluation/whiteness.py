@@ -1,13 +1,12 @@
 """Innovations of an optimal filter have mean zero and no memory: the tests of both."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 
 
-@dataclass(frozen=True)
+@record
 class Whiteness:
     """Autocorrelation of innovations and the test that it is zero.
 

@@ -1,15 +1,14 @@
 """Where the sensors are, and the wavelength they use."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 
 
-@dataclass(frozen=True)
+@record
 class RadarArray:
     """Fixed monostatic continuous-wave radar sensors on one platform.
 
@@ -40,13 +39,12 @@ class RadarArray:
     wavelength: float = 0.0125
 
     def __post_init__(self):
-        """Check and freeze the fields."""
+        """Check the fields."""
         positions = _checks.finite("positions", self.positions, (None, 3)).copy()
         if positions.ndim != 2 or not len(positions):
             raise ValueError(f"positions must have shape (N, 3) with N >= 1, got {positions.shape}")
         if len(np.unique(positions, axis=0)) < len(positions):
             raise ValueError(f"positions must differ from one another, got {positions.tolist()}")
-        positions.flags.writeable = False
         object.__setattr__(self, "positions", positions)
         object.__setattr__(
             self, "wavelength", _checks.positive_number("wavelength", self.wavelength)
@@ -55,16 +53,6 @@ class RadarArray:
     def __len__(self):
         """Return the number of sensors N."""
         return len(self.positions)
-
-    def __eq__(self, other):
-        """Return whether `other` has the same positions and wavelength."""
-        if not isinstance(other, RadarArray):
-            return NotImplemented
-        return self.wavelength == other.wavelength and np.array_equal(
-            self.positions, other.positions
-        )
-
-    __hash__ = None
 
     @property
     def doppler_per_speed(self):

@@ -1,13 +1,13 @@
 """A scenario: sensors, a target's path, and how it is sampled, as a file describes them."""
 
 import tomllib
-from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
 
 import numpy as np
 
 from .. import _checks
+from .._records import record
 from .doppler import check_clear_of_sensors
 from .radar_array import RadarArray
 
@@ -19,7 +19,7 @@ _ENTRIES = {
 }
 
 
-@dataclass(frozen=True)
+@record
 class Scenario:
     """One target on a straight path before an array, and the settings of its tracker.
 
@@ -67,7 +67,7 @@ class Scenario:
     P0: np.ndarray
 
     def __post_init__(self):
-        """Check and freeze the fields."""
+        """Check the fields."""
         x0 = _checks.finite("x0", self.x0, (6,)).copy()
         P0 = _checks.covariance("P0", self.P0, 6).copy()
         _checks.instance("array", self.array, RadarArray)
@@ -75,7 +75,6 @@ class Scenario:
             if array.shape != shape:
                 raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
         check_clear_of_sensors("x0", x0, self.array)
-        x0.flags.writeable = P0.flags.writeable = False
         object.__setattr__(self, "x0", x0)
         object.__setattr__(self, "P0", P0)
         object.__setattr__(self, "samples", _checks.whole_number("samples", self.samples))

@@ -1,11 +1,10 @@
 """What the estimators share that look at the bins of a discrete Fourier transform."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.fft
 
 from .. import _checks
+from .._records import record
 
 
 def samples(x, fs, least=2):
@@ -29,7 +28,7 @@ def limits(band, fs):
     return low, high, high - low >= fs * (1 - 1e-12)
 
 
-@dataclass(frozen=True)
+@record
 class Bins:
     """The transforms of windows, and which of their bins lie in the band."""
 

@@ -1,6 +1,5 @@
 """A recording, and what its two formats on disk have in common."""
 
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from os import PathLike
 from pathlib import Path
@@ -8,9 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from .. import _checks
+from .._records import record
 
 
-@dataclass(frozen=True)
+@record
 class Recording:
     """IQ samples of several sensors, with what is needed to make Doppler shifts of them.
 

@@ -1,10 +1,9 @@
 """From a record of IQ samples to a record of Doppler shifts, each with the time it belongs to."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 from ._bins import about_mean, sum_of_ones
 from .frequency import ml_frequency, ml_frequency_dc, peaks
 from .laws import crlb_frequency_std, crlb_frequency_std_dc
@@ -13,7 +12,7 @@ _TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}
 _AT_ONCE = 2**14  # samples in the windows of one call of an estimator: a quarter of a megabyte
 
 
-@dataclass(frozen=True)
+@record
 class DopplerRecord:
     """Doppler shifts from windows of IQ samples.
 

@@ -1,13 +1,12 @@
 """The life of a track: tentative at first, confirmed by repeated detections, deleted at the end."""
 
-from dataclasses import dataclass
-
 from .. import _checks
+from .._records import record
 
 TENTATIVE, CONFIRMED, DELETED = "tentative", "confirmed", "deleted"
 
 
-@dataclass(frozen=True)
+@record
 class TrackLife:
     """Where a track stands in its life.
 
@@ -29,7 +28,7 @@ class TrackLife:
     misses: int
 
 
-@dataclass(frozen=True)
+@record
 class TrackManager:
     """The rules by which tracks are confirmed and deleted.
 

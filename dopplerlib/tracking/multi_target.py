@@ -1,16 +1,15 @@
 """Many detections a scan, an unknown number of targets: predict, gate, assign, update, start."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 from ..estimation.extended_update import _corrected, _innovation
 from .association import gnn_assign
 from .management import CONFIRMED, DELETED
 
 
-@dataclass(frozen=True)
+@record
 class ManagedTrack:
     """One track from its first detection to its end.
 

@@ -1,14 +1,13 @@
 """Probabilistic data association: use every detection, each by its chance of being the target."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .. import _checks
+from .._records import record
 from ..estimation.linear_kalman import _check_leading
 
 
-@dataclass(frozen=True)
+@record
 class PdaUpdate:
     """What a step of probabilistic data association returns.
 

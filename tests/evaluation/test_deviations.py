@@ -26,7 +26,7 @@ def read(tmp_path, text):
 def test_a_row_shows_both_sides_and_the_way_to_the_cell(tmp_path):
     deviations = read(tmp_path, TABLE)
     assert repr(deviations) == "1 deviations: 1 gap, 0 contradictions, 0 misprints"
-    assert deviations.entries[0].claims == ["start-reliable"]
+    assert deviations.entries[0].claims == ("start-reliable",)
     row = deviations._repr_markdown_().splitlines()[2]
     assert 'deviation-gap">gap<' in row
     assert r"The box $\|x\|$ is not told." in row

@@ -1,16 +1,15 @@
 """The path of one radar: gate, nearest neighbor, Kalman filter (Chapters 3 and 4)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...tracking.association import nearest_neighbor
 from ...tracking.gates import chi2_gate, fixed_box_gate
 from .published import Settings
 
 
-@dataclass(frozen=True)
+@record
 class RadarTrack:
     """What the filter of one radar makes of its detections.
 

@@ -1,12 +1,12 @@
 """What the thesis prints: settings of its text and of its code, from ``data/asheim2015``."""
 
-from dataclasses import dataclass
 from functools import cache, partial
 
 import numpy as np
 
 from ... import _checks
 from ..._data import data, read_toml
+from ..._records import record
 from ...model.kinematics import wna_process_noise
 from ...model.ranging_noise import linear_snr, resolution_deviation
 
@@ -14,7 +14,7 @@ data_file = partial(data, "asheim2015")
 SETTINGS = ("text", "code", "modern")
 
 
-@dataclass(frozen=True)
+@record
 class Settings:
     """How the filter of one radar is set.
 

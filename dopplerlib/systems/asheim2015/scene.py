@@ -1,16 +1,17 @@
 """Tracks, what both radars measure of them, and the noise (Chapter 5)."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...model.range_rate import range_rate
 from ...model.ranging_noise import detection_probability
 from .published import deviations, scenario, snr
 
 
-@dataclass(frozen=True)
+@record
 class Records:
     """Simulated records of both radars.
 

@@ -1,10 +1,9 @@
 """SIMULATED stand-in for the recordings of Chapter 6, which are not published."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...model.range_rate import range_rate
 from .published import deviations, resolutions, scenario, snr
 from .scene import radars
@@ -13,7 +12,7 @@ WALKS = ("turns outside", "stops at the edge")
 ECHOES, CLUTTER, GHOSTS = 3, 3, 4  # most false or further detections of a kind in one scan
 
 
-@dataclass(frozen=True)
+@record
 class Walk:
     """A simulated walk and what the radars report of it.
 

@@ -1,14 +1,13 @@
 """From two radars to a position: two circles, of ranges as measured or as filtered."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..._records import record
 from ...tracking.bilateration import bilaterate
 from .one_radar import filter_radar
 
 
-@dataclass(frozen=True)
+@record
 class PositionTrack:
     """Estimated positions, and what they come from.
 

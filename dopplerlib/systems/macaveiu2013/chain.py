@@ -1,10 +1,9 @@
 """The processing scheme of Fig 6: from raw detections to tracks."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...model.kinematics import ncv_transition
 from ...model.polar_radar import polar_radar_h, polar_radar_jacobian
 from ...tracking.association import greedy_assign
@@ -29,7 +28,7 @@ OBJECT_NOISE = np.diag([0.6, 0.04, 0.15]) ** 2
 MANAGER = TrackManager(hits=4, window=6, delete_after=13)  # half a second without detection
 
 
-@dataclass(frozen=True)
+@record
 class Scan:
     """Detections of one measurement.
 

@@ -5,7 +5,7 @@ runs the study; what it found is in ``data/macaveiu2013`` and read here.
 """
 
 import csv
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cache
 
 import numpy as np
@@ -13,6 +13,7 @@ from scipy.special import ndtr
 
 from ... import _checks
 from ..._data import read_lines
+from ..._records import record
 from ...model.polar_radar import polar_radar_h
 from ...tracking.association import gnn_assign
 from ...tracking.management import TrackManager
@@ -41,7 +42,7 @@ ONLY = {
 }
 
 
-@dataclass(frozen=True)
+@record
 class Outcome:
     """What the scheme made of one record.
 
@@ -76,7 +77,7 @@ class Outcome:
     begun: int
 
 
-@dataclass(frozen=True)
+@record
 class Counts:
     """How many detections of one record there are, and how many the clutter rule calls clutter.
 

@@ -1,10 +1,9 @@
 """Two pedestrians whose paths cross: nearest neighbor against the Hungarian algorithm."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...model.kinematics import ncv_transition
 from .published import settings
 from .tracking import gain_sequence, measure
@@ -13,7 +12,7 @@ WALK = 1.4  # m/s; ours, as everything here: the document names the algorithm an
 RULES = ("each its nearest", "greedy", "Hungarian")
 
 
-@dataclass(frozen=True)
+@record
 class Crossing:
     """How two tracks came through a crossing.
 

@@ -1,17 +1,18 @@
 """What the document states: its five paths and its settings, from ``data/macaveiu2013``."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
 
 from ..._data import data, read_toml
+from ..._records import record
 
 data_file = partial(data, "macaveiu2013")
 KMH = 1 / 3.6  # m/s
 
 
-@dataclass(frozen=True)
+@record
 class Settings:
     """Sampling, noise and filter; what the document leaves open is our choice.
 
@@ -68,7 +69,7 @@ class Settings:
         return replace(self, **changes)
 
 
-@dataclass(frozen=True)
+@record
 class Path2D:
     """One true path.
 

@@ -1,11 +1,11 @@
 """For which noise the claims of Section IV hold: the document does not state its noise."""
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...evaluation.intervals import share_interval
 from ...model.kinematics import ncv_transition
 from .published import paths, settings
@@ -16,7 +16,7 @@ MOST = 0.9  # a claim on every record holds where it is true in this share of th
 CLAIMS = ("Fig 7 much below 1 m", "all below 1 m", "10b and 11c worse", "all three")
 
 
-@dataclass(frozen=True)
+@record
 class Scores:
     """How the five paths went, in every run.
 

@@ -1,10 +1,9 @@
 """The linear Kalman filter of Section III on the paths of Section IV (Figs 7 to 11)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...estimation.linear_kalman import kf
 from ...estimation.track import Track
 from ...evaluation.consistency import nees
@@ -12,7 +11,7 @@ from ...model.kinematics import ncv_transition
 from .published import Path2D, settings
 
 
-@dataclass(frozen=True)
+@record
 class Runs:
     """One path, measured and filtered many times.
 

@@ -4,11 +4,12 @@
 of linearization apart: where the tangent is taken, and how much the world bends away from it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...estimation.extended_kalman import ekf
 from ...estimation.track import Track
 from ...evaluation.consistency import nees
@@ -122,7 +123,7 @@ def switched_ekf(
     return Track(x, P, innovation, S, nis, np.ones(nis.shape, bool))
 
 
-@dataclass(frozen=True)
+@record
 class Consistency:
     """What many runs of one filter gave, thinned in time.
 

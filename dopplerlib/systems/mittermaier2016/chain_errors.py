@@ -1,13 +1,12 @@
 """How far the tracks of the whole chain are from the truth."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..._records import record
 from .published import scenario
 
 
-@dataclass(frozen=True)
+@record
 class Judged:
     """Tracks of the target of Table 2 beside the truth.
 

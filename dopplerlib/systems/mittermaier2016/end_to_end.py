@@ -1,11 +1,11 @@
 """The whole chain on the track of Table 2: from IQ samples to a position, every stage a switch."""
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...model.motion import constant_velocity
 from ...signal.frequency import ml_frequency
 from ...signal.impairments import correct_iq_imbalance, remove_mean
@@ -20,7 +20,7 @@ from .start import start_box
 SEEN = 20.0
 
 
-@dataclass(frozen=True)
+@record
 class EndToEnd:
     """Tracks from IQ samples, one for each hypothesis about the start.
 

@@ -1,10 +1,9 @@
 """The error maps of Section 3.4, drawn anew as often as wanted (Fig 3)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...estimation.maximum_likelihood import ml_start
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_shift
@@ -13,7 +12,7 @@ from .published import published_figure3
 _IN_PLANE = np.array([True, True, False, True, True, False])
 
 
-@dataclass(frozen=True)
+@record
 class ErrorMap:
     """Errors of maximum-likelihood starts all over the plane of Fig 3.
 

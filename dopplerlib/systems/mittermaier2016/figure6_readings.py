@@ -4,12 +4,12 @@ What the paper leaves open is drawn at random for each run of ours. All runs are
 same few numbers as the published one, and the runs nearest to it are asked what they were made of.
 """
 
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...estimation.extended_kalman import ekf
 from ...evaluation.consistency import chi2_interval
 from ...evaluation.intervals import share_interval
@@ -37,7 +37,7 @@ OPTIONS = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
+@record
 class Figure6Readings:
     """Runs of many readings of the simulation example, described by a few numbers.
 

@@ -1,11 +1,10 @@
 """Which reading of Section 3.4 explains the maps of Fig 3 best, by likelihood."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.special import ndtr
 
 from ... import _checks
+from ..._records import record
 
 QUANTITIES = ("position", "state", "velocity")
 
@@ -42,7 +41,7 @@ ORIENTATIONS = {
 }
 
 
-@dataclass(frozen=True)
+@record
 class Reading:
     """One reading of the figure and how well it explains what is drawn.
 

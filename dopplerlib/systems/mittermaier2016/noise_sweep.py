@@ -1,12 +1,13 @@
 """How the error of the start grows with the noise (Fig 4), under any reading of the text."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 
 import numpy as np
 
 from ... import _checks
 from ..._progress import progress_bar
+from ..._records import record
 from ...estimation.maximum_likelihood import ml_start
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_shift
@@ -49,7 +50,7 @@ def _ours(name):
     return field(default_factory=lambda: _settings()["ours"][name])
 
 
-@dataclass(frozen=True)
+@record
 class SweepReading:
     """What the text leaves open about Fig 4, decided in one way.
 
@@ -87,7 +88,7 @@ class SweepReading:
     axis: str = _ours("axis")
 
 
-@dataclass(frozen=True)
+@record
 class Figure4:
     """Errors of the start, averaged over the grid: one value for each level and each draw.
 

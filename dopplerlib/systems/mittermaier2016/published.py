@@ -1,18 +1,18 @@
 """What the paper prints and draws, from ``data/mittermaier2016``."""
 
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from ..._data import data, read_json, read_lines, read_toml
+from ..._records import record
 from ...model.radar_array import RadarArray
 from ...model.scenario import Scenario
 
 data_file = partial(data, "mittermaier2016")
 
 
-@dataclass(frozen=True)
+@record
 class Table2:
     """The start of the simulation example as Table 2 prints it.
 
@@ -28,7 +28,7 @@ class Table2:
     x_ml: np.ndarray
 
 
-@dataclass(frozen=True)
+@record
 class PublishedFigure3:
     """The two error maps of Fig 3, read off a pixel image, and the settings that go with them.
 
@@ -75,7 +75,7 @@ class PublishedFigure3:
         return np.where(self.below, self.lowest, self.error)
 
 
-@dataclass(frozen=True)
+@record
 class PublishedFigure6:
     """The curves of Fig 6, read off the paper's vector graphics.
 
@@ -111,7 +111,7 @@ class PublishedFigure6:
     path: np.ndarray
 
 
-@dataclass(frozen=True)
+@record
 class PublishedFigure4:
     """The dots of Fig 4, read off the paper's vector graphics.
 

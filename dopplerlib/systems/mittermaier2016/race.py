@@ -1,12 +1,12 @@
 """Section 3.2 of Mittermaier et al. (2016): is the bound attained? Every estimator against it."""
 
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from ... import _checks
 from ..._data import read_json
+from ..._records import record
 from ...evaluation.intervals import Estimate, mean_interval, share_interval
 from ...signal import interpolation, phase
 from ...signal.frequency import ml_frequency, ml_frequency_dc
@@ -40,7 +40,7 @@ RACE = {
 }
 
 
-@dataclass(frozen=True)
+@record
 class Race:
     """Errors of the estimators of `RACE` at the levels of `RACE_LEVELS`.
 

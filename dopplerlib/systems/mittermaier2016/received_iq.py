@@ -1,10 +1,9 @@
 """What six modules record of the target of Table 2: IQ samples with the faults of cheap ones."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...model.radar_array import RadarArray
 from ...signal.front_end import lowpass, lowpass_decimate
 from ...signal.impairments import add_dc, add_iq_imbalance
@@ -15,7 +14,7 @@ from .published import scenario
 FAULTS = {"dc": 0.5 + 0.3j, "gain_db": 1.0, "phase_deg": 5.0}
 
 
-@dataclass(frozen=True)
+@record
 class Baseband:
     """IQ samples of an array after the low-pass.
 

@@ -1,11 +1,12 @@
 """The start of the simulation example, estimated as often as wanted (Table 2)."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
 from ... import _checks
+from ..._records import record
 from ...estimation.maximum_likelihood import Start, ml_start
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_jacobian, doppler_shift
@@ -14,7 +15,7 @@ from ...model.simulation import simulate
 from .published import published_figure3, quoted, scenario
 
 
-@dataclass(frozen=True)
+@record
 class Starts:
     """Estimates of the first state of the simulation example from short records.
 

@@ -1,11 +1,12 @@
 """Which reading of Fig 4 do the published dots support?"""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 from ..._data import read_json, read_lines
+from ..._records import record
 from .noise_sweep import Figure4, SweepReading, noise_levels
 from .published import figure4_settings
 
@@ -60,7 +61,7 @@ def scored_levels():
     return tuple(figure4_settings()["ours"]["comparison"]["levels"])
 
 
-@dataclass(frozen=True)
+@record
 class Structure:
     """Model of the dots: a sequence has a level of its own, and a scatter from dot to dot.
 

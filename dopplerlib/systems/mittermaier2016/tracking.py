@@ -1,10 +1,9 @@
 """The simulation example of Section 4, run as often as wanted (Fig 6)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...estimation.extended_kalman import ekf
 from ...estimation.track import Track
 from ...model.motion import constant_velocity
@@ -12,7 +11,7 @@ from ...model.simulation import simulate
 from .published import scenario, table2
 
 
-@dataclass(frozen=True)
+@record
 class Figure6:
     """Our runs of the simulation example.
 

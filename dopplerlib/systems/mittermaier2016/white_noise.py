@@ -1,15 +1,14 @@
 """What Eq 8 assumes, noise without memory, put to a Kalman filter whose noise has one."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...estimation.linear_kalman import kf
 from ...evaluation.intervals import Estimate, mean_interval
 
 
-@dataclass(frozen=True)
+@record
 class WalkFilter:
     """A scalar Kalman filter over a random walk, judged after it has settled.
 

@@ -1,10 +1,11 @@
 """The report's system, run as often as wanted, with each cause of failure repaired or not."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...estimation.extended_kalman import ekf
 from ...estimation.maximum_likelihood import ml_start
 from ...estimation.track import Track
@@ -21,7 +22,7 @@ STARTS = ("as reported", "global", "long", "truth")
 LONG = 100  # samples of the "long" start: a tenth of the record
 
 
-@dataclass(frozen=True)
+@record
 class PostMortem:
     """Runs of one variant of the report's system.
 

@@ -1,12 +1,12 @@
 """What the report states, from ``data/sombatsatien``."""
 
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from ... import _checks
 from ..._data import data, read_toml
+from ..._records import record
 from ...model.doppler import doppler_shift
 from ...model.radar_array import RadarArray
 from ...model.scenario import Scenario
@@ -14,7 +14,7 @@ from ...model.scenario import Scenario
 data_file = partial(data, "sombatsatien")
 
 
-@dataclass(frozen=True)
+@record
 class StartSettings:
     """How the report finds a start, and the start that it found.
 

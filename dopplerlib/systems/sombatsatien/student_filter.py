@@ -75,14 +75,8 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
     F, Q = constant_velocity(T, sigma_p)
     signs, sensors = _signs(jacobian), (*array.positions.T, array.doppler_per_speed)
     R = sigma_f**2 * np.eye(m)
-    out = Track(
-        np.empty((runs, samples, 6)),
-        np.empty((runs, samples, 6, 6)),
-        np.empty((runs, samples, m)),
-        np.empty((runs, samples, m, m)),
-        np.empty((runs, samples)),
-        np.ones((runs, samples), bool),
-    )
+    shapes = {"x": (6,), "P": (6, 6), "innovation": (m,), "S": (m, m), "nis": ()}
+    out = {name: np.empty((runs, samples, *shape)) for name, shape in shapes.items()}
     for k in range(samples):
         x, P = x @ F.T, F @ P @ F.T + Q
         # The kernel gives the shifts and their derivatives at once.
@@ -98,9 +92,10 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
         x = x + (gain @ innovation[..., None])[..., 0]
         A = np.eye(6) - gain @ H
         P = A @ P @ A.mT + sigma_f**2 * gain @ gain.mT
-        out.x[:, k], out.P[:, k], out.innovation[:, k], out.S[:, k] = x, P, innovation, S
-        out.nis[:, k] = np.sum(innovation * solved[..., 6], axis=-1)
-    return out
+        nis = np.sum(innovation * solved[..., 6], axis=-1)
+        for name, value in zip(out, (x, P, innovation, S, nis), strict=True):
+            out[name][:, k] = value
+    return Track(**out, updated=np.ones((runs, samples), bool))
 
 
 def _signs(jacobian):

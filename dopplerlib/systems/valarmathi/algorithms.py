@@ -1,10 +1,9 @@
 """The five algorithms of the document, and a sixth that knows how old its measurements are."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...signal.synthesis import iq_from_velocity
 from .doppler_filter import FilteredDoppler, doppler_filter
 from .filters import VelocityTrack, filter_velocity
@@ -21,7 +20,7 @@ ALGORITHMS = {
 }
 
 
-@dataclass(frozen=True)
+@record
 class AlgorithmRuns:
     """Runs of all algorithms on the same samples of two sensors.
 

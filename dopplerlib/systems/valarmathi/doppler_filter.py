@@ -2,17 +2,17 @@
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...signal.laws import crlb_frequency_std
 from .published import chosen, stated
 
 
-@dataclass(frozen=True)
+@record
 class FilteredDoppler:
     """Velocities from windows of several lengths, which all end with the same sample.
 

@@ -1,17 +1,16 @@
 """The Kalman filter of the document behind one or two sensors, with a fixed or a chosen window."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from .doppler_filter import FilteredDoppler, measurement_variance, share
 from .published import chosen, stated
 
 FEEDBACK = ("none", "own", "fused")
 
 
-@dataclass(frozen=True)
+@record
 class VelocityTrack:
     """What the filters of one or two sensors make of their measurements.
 
@@ -105,7 +104,13 @@ def filter_velocity(
     if code:
         if table is None or not np.array_equal(table.windows, doppler.windows):
             raise ValueError("table must be given for a feedback, and for the same windows")
-        lookup = table.accelerations, table.snrs_db, np.log(table.best), np.log(table.windows)
+        # Copies, for numba compiles anew for an array that must not be written to.
+        lookup = (
+            table.accelerations.copy(),
+            table.snrs_db.copy(),
+            np.log(table.best),
+            np.log(table.windows),
+        )
     else:
         lookup = np.zeros(2), np.zeros(2), np.zeros((2, 2)), np.log(doppler.windows)
 

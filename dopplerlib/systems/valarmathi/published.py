@@ -1,6 +1,5 @@
 """What the document states, what this book fills in, and the paths that follow from both."""
 
-from dataclasses import dataclass
 from functools import partial
 from types import SimpleNamespace
 
@@ -8,13 +7,14 @@ import numpy as np
 
 from ... import _checks
 from ..._data import data, read_toml
+from ..._records import record
 from ...signal.synthesis import velocity_profile
 
 data_file = partial(data, "valarmathi")
 PATHS = ("path 1", "path 2", "fighter")
 
 
-@dataclass(frozen=True)
+@record
 class VelocityPath:
     """The course of a target's velocity, and which samples count for what.
 

@@ -1,11 +1,10 @@
 """All algorithms on all paths at all signal-to-noise ratios: a saved study, and each cell again."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
 from ..._data import read_lines
+from ..._records import record
 from ...evaluation.intervals import Estimate, share_interval
 from .algorithms import ALGORITHMS, run_algorithms
 from .published import PATHS, chosen, stated
@@ -19,7 +18,7 @@ CLIFF_RUNS = 200
 CLIFF_SNRS_DB = np.arange(-8.0, -1.0)
 
 
-@dataclass(frozen=True)
+@record
 class Study:
     """Errors of every run of all algorithms on all paths at all signal-to-noise ratios.
 

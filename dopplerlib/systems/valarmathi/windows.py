@@ -1,16 +1,15 @@
 """Which window suits which acceleration and noise: the document's error, table and choice."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ... import _checks
+from ..._records import record
 from ...signal.synthesis import iq_from_velocity, velocity_profile
 from .doppler_filter import doppler_filter
 from .published import chosen, stated
 
 
-@dataclass(frozen=True)
+@record
 class WindowTable:
     """The best window for some accelerations and signal-to-noise ratios.
 

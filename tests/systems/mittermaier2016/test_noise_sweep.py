@@ -181,8 +181,9 @@ def test_of_two_readings_the_one_that_made_the_dots_scores_higher():
     # Twelve sequences are enough: the scores are a hundred nats apart, their intervals some tens.
     truth, again = run(levels, seed=1), run(levels, 12, seed=3)
     other = run(levels, 12, seed=2, shared=False)
-    dots = paper.PublishedFigure4(paper.noise_levels(), *np.full((2, 31, 20), np.nan))
-    dots.position[levels], dots.velocity[levels] = truth.position, truth.velocity
+    position, velocity = np.full((2, 31, 20), np.nan)
+    position[levels], velocity[levels] = truth.position, truth.velocity
+    dots = paper.PublishedFigure4(paper.noise_levels(), position, velocity)
     scores = [paper.figure4_score(r, dots, rng=np.random.default_rng(4)) for r in (again, other)]
     assert scores[0][1] > scores[1][2]  # the intervals do not touch
 
