@@ -2,29 +2,48 @@
 
 import numpy as np
 
-# Rounding in a covariance, as a share of its largest entry. An update in the form of Joseph leaves
-# an asymmetry of about 1e-12, from one linear-algebra library to another a little more or less; a
-# mistake leaves more than this.
+# Rounding in a covariance, as a share of the two standard deviations that an entry belongs to: an
+# error of this size in a correlation coefficient. A product of n terms in double precision is off
+# by n 1e-16 of its factors' lengths, so that what `estimation.gaussian` returns is off by 1e-14. A
+# filter that subtracts loses as many digits more as the variance before an update is larger than
+# that after it: this admits 1e6. Scaled by the diagonal, it does not depend on the units.
 _ROUNDING = 1e-9
+
+_PLAIN = (float, int, np.ndarray, np.float64)
 
 
 def real(name, value):
     """Return `value` as a float array, or raise unless it is made of real numbers.
 
-    Text, booleans, None, complex numbers, dates and masked arrays are refused: NumPy would turn
-    each of them into floats and lose what they meant.
+    Text, booleans, None, complex numbers, dates, masks and units are refused, also inside lists:
+    NumPy would turn each of them into floats and lose what they meant.
     """
-    if isinstance(value, np.ma.MaskedArray):
-        raise ValueError(
-            f"{name} must not be a masked array, whose mask would be lost, got {_short(value)}"
-        )
-    try:
-        array = np.asarray(value)
-    except (TypeError, ValueError):  # a ragged nested list
-        array = None
-    if array is None or array.dtype.kind not in "iuf":
-        raise ValueError(f"{name} must be an array of real numbers, got {_short(value)}")
-    return array.astype(float, copy=False)
+    return _numbers(name, value, "iuf", "real numbers").astype(float, copy=False)
+
+
+def booleans(name, value, shape=None):
+    """Return `value` as an array of booleans, or raise if it is none, or not of `shape`.
+
+    `shape` is matched from the right as by `check_shape`.
+    """
+    array = _numbers(name, value, "b", "booleans")
+    check_shape(name, array, shape)
+    return array
+
+
+def one_boolean(name, value):
+    """Return `value` as a bool, or raise if it is not one boolean."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name} must be True or False, got {_short(value)}")
+    return bool(value)
+
+
+def measured(name, value, shape):
+    """Return `value` as a float array of `shape`, or raise; NaN stands for what is missing."""
+    array = real(name, value)
+    check_shape(name, array, shape)
+    _check_all(name, "finite, or NaN where it is missing", array, ~np.isinf(array))
+    return array
 
 
 def finite(name, value, shape=None):
@@ -43,13 +62,7 @@ def finite_complex(name, value, shape=None):
 
     Real numbers are complex ones; everything else that `real` refuses is refused here as well.
     """
-    try:
-        array = np.asarray(value)
-    except (TypeError, ValueError):  # a ragged nested list
-        array = None
-    if array is None or array.dtype.kind != "c" or isinstance(value, np.ma.MaskedArray):
-        return finite(name, value, shape).astype(complex)
-    array = array.astype(complex, copy=False)
+    array = _numbers(name, value, "iufc", "numbers").astype(complex, copy=False)
     check_shape(name, array, shape)
     _check_all(name, "finite", array, np.isfinite(array))
     return array
@@ -69,10 +82,20 @@ def check_shape(name, array, shape):
 
 def matrix(name, value, shape):
     """Return `value` as a float array, or raise unless it is one finite matrix of `shape`."""
-    array = finite(name, value, shape)
+    return one_matrix(name, finite(name, value, shape))
+
+
+def one_matrix(name, array):
+    """Return `array`, or raise unless it has two axes."""
     if array.ndim != 2:
         raise ValueError(f"{name} must be one matrix, got an array of shape {array.shape}")
     return array
+
+
+def detections(name, value, m):
+    """Return measurements (..., D, m), NaN for what is missing; an empty list is an empty scan."""
+    array = real(name, value)
+    return measured(name, array.reshape(0, m) if array.shape == (0,) else array, (None, m))
 
 
 def each_run(name, value, batch, shape):
@@ -87,6 +110,28 @@ def each_run(name, value, batch, shape):
             f"{name} must have leading axes that broadcast against the runs {batch}, "
             f"got {lead} in an array of shape {value.shape}"
         ) from None
+
+
+def check_leading(**arguments):
+    """Raise unless the leading axes of all broadcast; each argument is (array, own axes)."""
+    leading = {name: value.shape[: value.ndim - own] for name, (value, own) in arguments.items()}
+    try:
+        np.broadcast_shapes(*leading.values())
+    except ValueError:
+        got = ", ".join(f"{lead} of {name}" for name, lead in leading.items())
+        raise ValueError(
+            f"{', '.join(leading)} must have leading axes that broadcast, got {got}"
+        ) from None
+
+
+def each_sample(name, value, samples, shape):
+    """Return `value`, one of `shape` or one for each sample, as (samples, *shape), or raise."""
+    if value.shape not in (shape, (samples, *shape)):
+        raise ValueError(
+            f"{name} must have shape {shape}, or {(samples, *shape)} with one for each sample, "
+            f"got {value.shape}"
+        )
+    return np.broadcast_to(value, (samples, *shape))
 
 
 def check_broadcast(name, shape, other_name, other_shape):
@@ -138,7 +183,8 @@ def positive_number(name, value):
 
 def whole_number(name, value, least=1):
     """Return `value` as an int, or raise if it is not a whole number of at least `least`."""
-    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    # A boolean is an int, and a duration of NumPy an integer, but neither is a number.
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.timedelta64))
     if not whole or not least <= value < 2**63:
         raise ValueError(f"{name} must be a whole number of at least {least}, got {_short(value)}")
     return int(value)
@@ -170,6 +216,45 @@ def some_of(name, values, choices):
     return tuple(one_of(name, value, choices) for value in values)
 
 
+def components(name, values, count):
+    """Return `values`, any iterable, as a tuple of places from 0 to `count` - 1, or raise."""
+    wanted = f"{name} must hold components from 0 to {count - 1}"
+    try:
+        places = tuple(values)
+    except TypeError:
+        raise ValueError(f"{wanted}, got {_short(values)}") from None
+    for place in places:
+        whole = isinstance(place, (int, np.integer))
+        if not whole or isinstance(place, (bool, np.timedelta64)) or not 0 <= place < count:
+            raise ValueError(f"{wanted}, got {_short(places)}")
+    return places
+
+
+def iterable(name, values):
+    """Return an iterator over `values`, or raise if there is none."""
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise ValueError(f"{name} must be an iterable, got {_short(values)}")
+    return iter(values)
+
+
+def function(name, value):
+    """Return `value`, or raise if it cannot be called."""
+    if not callable(value):
+        raise ValueError(f"{name} must be a function, got {_short(value)}")
+    return value
+
+
+def estimates(names, *arrays):
+    """Raise unless the results that come of the arguments `names` are finite."""
+    for array in arrays:
+        if not np.isfinite(array).all():
+            place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+            raise ValueError(
+                f"{names} must keep the estimates within the range of floating-point numbers, "
+                f"got {array[place]} at index {place}"
+            )
+
+
 def instance(name, value, kind):
     """Return `value`, or raise if it is not an instance of the class `kind`."""
     if not isinstance(value, kind):
@@ -188,29 +273,43 @@ def probability(name, value):
 def covariance(name, value, n, definite=True):
     """Return `value` as a float array, or raise if a matrix in it is not a covariance.
 
-    A covariance is symmetric to rounding and positive definite; with ``definite=False`` it may
-    have no spread in some directions. It is returned as it came.
+    A covariance is symmetric and positive definite; with ``definite=False`` it may have no spread
+    in some directions. Both are judged after it was scaled to a diagonal of ones, and so whatever
+    the units: as correlations, up to rounding. It is returned as it came.
     """
     array = finite(name, value, (n, n))
-    largest = np.abs(array).max(axis=(-2, -1), initial=0.0)
-    asymmetry = np.abs(array - array.swapaxes(-1, -2)).max(axis=(-2, -1), initial=0.0)
-    if (asymmetry > _ROUNDING * largest).any():
-        raise ValueError(
-            f"{name} must be symmetric, got a difference of {asymmetry.max():.3g} across "
-            "the diagonal"
-        )
-    if definite:
-        try:
-            np.linalg.cholesky(array)
-            return array
-        except np.linalg.LinAlgError:
-            wanted = "positive definite"
-    else:
-        if (np.linalg.eigvalsh(array)[..., :1] >= -_ROUNDING * largest[..., None]).all():
-            return array
-        wanted = "positive semidefinite"
-    least = np.linalg.eigvalsh(array)[..., 0].min()
-    raise ValueError(f"{name} must be {wanted}, got a smallest eigenvalue of {least:.3g}")
+    if not (array == array.mT).all():
+        difference = np.abs(array - array.mT)
+        deviation = np.sqrt(np.abs(np.diagonal(array, axis1=-2, axis2=-1)))
+        if (difference > _ROUNDING * deviation[..., :, None] * deviation[..., None, :]).any():
+            raise ValueError(
+                f"{name} must be symmetric, got a difference of {difference.max():.3g} across "
+                "the diagonal"
+            )
+    try:  # Scaling changes nothing for this test, which most matrices pass.
+        np.linalg.cholesky(array)
+        return array
+    except np.linalg.LinAlgError:
+        least = _least_eigenvalue(array)
+    if not definite and least >= -_ROUNDING:
+        return array
+    plain = np.linalg.eigvalsh(array)[..., 0].min()
+    got = f"{plain:.3g}" if plain <= 0 else f"{least:.3g} relative to its diagonal"
+    raise ValueError(
+        f"{name} must be positive {'definite' if definite else 'semidefinite'}, "
+        f"got a smallest eigenvalue of {got}"
+    )
+
+
+def _least_eigenvalue(array):
+    """Return the smallest eigenvalue of symmetric matrices that are scaled by their diagonals."""
+    deviation = np.sqrt(np.abs(np.diagonal(array, axis1=-2, axis2=-1)))
+    # Where a variance is zero, every covariance with it has to be: it is weighed like a large one.
+    deviation = np.where(deviation > 0, deviation, np.finfo(float).tiny ** 0.5)
+    with np.errstate(over="ignore", under="ignore"):
+        scaled = array / deviation[..., :, None] / deviation[..., None, :]
+    scaled = np.clip(scaled, -1e9, 1e9)  # a correlation beyond 1 is refused, however large
+    return np.linalg.eigvalsh(scaled)[..., 0].min()
 
 
 def generator(name, value):
@@ -221,6 +320,48 @@ def generator(name, value):
             f"numpy.random.default_rng(1), got {_short(value)}"
         )
     return value
+
+
+def _numbers(name, value, kinds, wanted):
+    """Return `value` as an array whose dtype is of one of `kinds`, or raise."""
+    good = type(value) in _PLAIN or _nothing_is_lost(name, value, wanted, "b" in kinds)
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):  # a ragged nested list
+        good = False
+    if not good or array.dtype.kind not in kinds:
+        raise ValueError(f"{name} must be an array of {wanted}, got {_short(value)}")
+    return array
+
+
+def _nothing_is_lost(name, value, wanted, boolean):
+    """Return whether NumPy would not mix booleans into numbers; raise if it drops mask or unit."""
+    if isinstance(value, (list, tuple)):
+        kinds = set(map(type, value))  # as fast as NumPy's own look at the list
+        if not boolean and not kinds.isdisjoint((bool, np.bool_)):
+            return False
+        return kinds.issubset((float, int, bool, np.float64)) or all(
+            boolean or part.dtype.kind != "b"
+            if type(part) is np.ndarray
+            else type(part) in _PLAIN or _nothing_is_lost(name, part, wanted, boolean)
+            for part in value
+        )
+    if isinstance(value, np.ma.MaskedArray) or _has_data(value, "mask"):
+        raise ValueError(
+            f"{name} must not be a masked array, whose mask would be lost, got {_short(value)}"
+        )
+    if _has_data(value, "unit") or _has_data(value, "units"):
+        raise ValueError(
+            f"{name} must be an array of {wanted} without a unit, which would be lost, "
+            f"got {_short(value)}"
+        )
+    return True
+
+
+def _has_data(value, attribute):
+    """Return whether something other than a method has this name (pandas has a method `mask`)."""
+    found = getattr(value, attribute, None)
+    return found is not None and not callable(found)
 
 
 def _check_all(name, wanted, array, good):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import _checks
-from .linear_kalman import _check_leading
+from . import gaussian
 
 
 def ekf_innovation(x, P, z, h, H, R, wrap=()):
@@ -37,7 +37,9 @@ def ekf_innovation(x, P, z, h, H, R, wrap=()):
     ([1.0], [[20.0]])
     """
     x, P, z, R = _checked(x, P, z, R)
-    innovation, S, _ = _innovation(x, P, z, h, H, R, wrap)
+    innovation, J = linearized(x, z, h, H, wrap)
+    S = gaussian.gain(P, J, R)[2]
+    _checks.estimates("x, P, h, H, R", S)
     return innovation, S
 
 
@@ -51,7 +53,7 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     P : array_like, shape (..., n, n)
         Predicted covariances.
     z : array_like, shape (..., m)
-        Measurements. One with a NaN in it is missing as a whole.
+        Measurements; NaN says that a component is missing. The others update alone.
     h : callable
         Measurement function: takes states (..., n), returns (..., m).
     H : callable
@@ -59,7 +61,7 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     R : array_like, shape (..., m, m)
         Covariance of the measurement noise. Leading axes of all arguments broadcast against one
         another.
-    wrap : sequence of int
+    wrap : iterable of int
         Components of the measurement that are angles in rad: their innovations are brought into
         [-pi, pi).
     accept : array_like of bool, shape (...), optional
@@ -72,17 +74,19 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     innovation : ndarray, shape (..., m)
         NaN where `z` is NaN.
     S : ndarray, shape (..., m, m)
+        Of all components, also of those that are missing.
 
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite (but for a NaN in `z`), `P` is not a covariance
-        (it may be singular), `R` is not positive definite, or `wrap` names a component that the
+        If shapes do not fit, a value is not finite (but for a NaN in `z`), also of what comes out,
+        `h` or `H` is no function, `P` is not a covariance (it may be singular), `R` is not positive
+        definite, or so small that S is singular to rounding, or `wrap` names a component that the
         measurement does not have.
 
     Notes
     -----
-    Bar-Shalom, Li, Kirubarajan (2001), Sec 10.3; the covariance is in the form of Joseph, as in
+    Bar-Shalom, Li, Kirubarajan (2001), Sec 10.3; the covariance is in Joseph form, as in
     `kf_update`.
 
     Examples
@@ -96,46 +100,52 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     ([[2.2], [2.0]], [[[0.2]], [[1.0]]])
     """
     x, P, z, R = _checked(x, P, z, R)
-    accept = np.asarray(True if accept is None else accept)
-    if accept.dtype != bool:
-        raise ValueError(f"accept must be made of booleans, got {accept.dtype}")
-    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 1), "R": (R, 2), "accept": (accept, 0)})
-    return _update(x, P, z, h, H, R, wrap, accept)
+    accept = _checks.booleans("accept", True if accept is None else accept)
+    _checks.check_leading(x=(x, 1), P=(P, 2), z=(z, 1), R=(R, 2), accept=(accept, 0))
+    innovation, J = linearized(x, z, h, H, wrap)
+    # What is refused is treated as if it were missing.
+    x, P, S = gaussian.update(x, P, np.where(accept[..., None], innovation, np.nan), J, R)
+    _checks.estimates("x, P, z, h, H, R", x, P, S)
+    return x, P, innovation, S
 
 
-def _update(x, P, z, h, H, R, wrap, accept=True):
-    innovation, S, J = _innovation(x, P, z, h, H, R, wrap)
-    there = np.isfinite(innovation).all(axis=-1) & accept
-    updated = _corrected(x, P, np.where(there[..., None], innovation, 0), S, J, R)
-    return updated[0], np.where(there[..., None, None], updated[1], P), innovation, S
+def linearized(x, z, h, H, wrap=()):
+    """Return the innovation of a nonlinear measurement, and the Jacobian: all that an EKF adds.
+
+    Parameters
+    ----------
+    x : ndarray, shape (..., n)
+        Predicted states.
+    z : ndarray, shape (..., m)
+        Measurements; NaN where one is missing.
+    h, H, wrap
+        See `ekf_update`.
+
+    Returns
+    -------
+    innovation : ndarray, shape (..., m)
+    J : ndarray, shape (..., m, n)
+
+    Raises
+    ------
+    ValueError
+        If `h` or `H` is no function, returns another shape or a value that is not finite, or `wrap`
+        names a component that the measurement does not have.
+    """
+    m = z.shape[-1]
+    wrap = _checks.components("wrap", wrap, m)
+    predicted = _checks.finite("h(x)", _checks.function("h", h)(x), (m,))
+    J = _checks.finite("H(x)", _checks.function("H", H)(x), (m, x.shape[-1]))
+    innovation = z - predicted
+    for i in wrap:
+        innovation[..., i] = (innovation[..., i] + np.pi) % (2 * np.pi) - np.pi
+    return innovation, J
 
 
 def _checked(x, P, z, R):
     x = _checks.finite("x", x, (None,))
     P = _checks.covariance("P", P, x.shape[-1], definite=False)
-    z = _checks.real("z", z)
-    _checks.check_shape("z", z, (None,))
-    if np.isinf(z).any():
-        raise ValueError("z must be finite, or NaN where it is missing, got an infinite value")
+    z = _checks.measured("z", z, (None,))
     R = _checks.covariance("R", R, z.shape[-1])
-    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 1), "R": (R, 2)})
+    _checks.check_leading(x=(x, 1), P=(P, 2), z=(z, 1), R=(R, 2))
     return x, P, z, R
-
-
-def _innovation(x, P, z, h, H, R, wrap):
-    m = z.shape[-1]
-    predicted = _checks.finite("h(x)", h(x), (m,))
-    J = _checks.finite("H(x)", H(x), (m, x.shape[-1]))
-    innovation = z - predicted
-    if not set(wrap) <= set(range(m)):
-        raise ValueError(f"wrap must hold components from 0 to {m - 1}, got {wrap}")
-    for i in wrap:
-        innovation[..., i] = (innovation[..., i] + np.pi) % (2 * np.pi) - np.pi
-    return innovation, J @ P @ np.swapaxes(J, -1, -2) + R, J
-
-
-def _corrected(x, P, innovation, S, J, R):
-    K = np.swapaxes(np.linalg.solve(S, J @ P), -1, -2)
-    A = np.eye(x.shape[-1]) - K @ J
-    P = A @ P @ np.swapaxes(A, -1, -2) + K @ R @ np.swapaxes(K, -1, -2)
-    return x + (K @ innovation[..., None])[..., 0], P

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from .linear_kalman import _update
+from . import gaussian
 
 
 @record
@@ -34,9 +34,10 @@ def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     Parameters
     ----------
     z : array_like, shape (..., K, m)
-        Measurements.
-    F, Q : array_like, shape (M, n, n)
-        Transition matrix and process noise of each model; all have the same state.
+        Measurements; NaN says that a component is missing at this sample, see `kf`.
+    F, Q : array_like, shape (M, n, n) or (K, M, n, n)
+        Transition matrix and process noise of each model; all have the same state. At uneven times
+        for each sample, those of the step which leads to it.
     H : array_like, shape (m, n)
         Measurement matrix.
     R : array_like, shape (m, m)
@@ -46,7 +47,7 @@ def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     x0 : array_like, shape (..., n)
         State one step before the first measurement; leading axes broadcast against those of `z`.
     P0 : array_like, shape (..., n, n)
-        Its covariance.
+        Its covariance; it may be singular: a component can be known exactly.
     mode0 : array_like, shape (M,), optional
         Probabilities of the models one step before the first measurement; equal if None.
 
@@ -57,8 +58,10 @@ def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     Raises
     ------
     ValueError
-        If shapes do not fit, there is no model or no sample, a value is not finite, a matrix is
-        not a covariance, or probabilities are negative or do not add to 1.
+        If shapes do not fit, there is no model or no sample, a value is not finite (but for a NaN
+        in `z`), also of what comes out, a matrix is not a covariance, `R` is so small that the
+        covariance of an innovation is singular to rounding, or probabilities are negative or do not
+        add to 1.
 
     Notes
     -----
@@ -77,34 +80,36 @@ def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     [False, False, True]
     """
     F = _checks.finite("F", F, (None, None, None))
-    M, n = F.shape[0], F.shape[-1]
-    if F.shape != (M, n, n) or not M:
+    M, n = F.shape[-3], F.shape[-1]
+    if F.shape[-2] != n or not M:
         raise ValueError(f"F must have shape (M, n, n) of at least one model, got {F.shape}")
     Q = _checks.covariance("Q", Q, n, definite=False)
-    if Q.shape != (M, n, n):
-        raise ValueError(f"Q must have shape {(M, n, n)} like F, got {Q.shape}")
     H = _checks.matrix("H", H, (None, n))
     m = H.shape[0]
     R = _checks.matrix("R", _checks.covariance("R", R, m), (m, m))
     transition = _probabilities("transition", transition, (M, M))
     mode0 = _probabilities("mode0", np.full(M, 1 / M) if mode0 is None else mode0, (M,))
-    z = _checks.finite("z", z, (None, m))
+    z = _checks.measured("z", z, (None, m))
     if not z.size:
         raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
-    batch = z.shape[:-2]
+    batch, samples = z.shape[:-2], z.shape[-2]
+    F = _checks.each_sample("F", F, samples, (M, n, n))
+    Q = _checks.each_sample("Q", Q, samples, (M, n, n))
     x0 = _checks.each_run("x0", _checks.finite("x0", x0, (n,)), batch, (n,))
-    P0 = _checks.each_run("P0", _checks.covariance("P0", P0, n), batch, (n, n))
+    P0 = _checks.each_run("P0", _checks.covariance("P0", P0, n, definite=False), batch, (n, n))
 
     x = np.repeat(x0[..., None, :], M, axis=-2)
     P = np.repeat(P0[..., None, :, :], M, axis=-3)
     with np.errstate(divide="ignore"):  # the logarithm of 0 is what it should be
         log_mode, log_transition = np.log(np.broadcast_to(mode0, (*batch, M))), np.log(transition)
     steps = []
-    for k in range(z.shape[-2]):
-        x, P, log_mode = _step(x, P, log_mode, z[..., k, :], F, Q, H, R, log_transition)
+    for k in range(samples):
+        x, P, log_mode = _step(x, P, log_mode, z[..., k, :], F[k], Q[k], H, R, log_transition)
         mode = _shares(log_mode, axis=-1)
-        steps.append((*_moments(x, P, mode), mode))
-    return ImmTrack(*(np.stack(s, axis=len(batch)) for s in zip(*steps, strict=True)))
+        steps.append((*gaussian.mixture(x, P, mode), mode))
+    track = ImmTrack(*(np.stack(s, axis=len(batch)) for s in zip(*steps, strict=True)))
+    _checks.estimates("F, Q, H, R, x0, P0, z", track.x, track.P, track.mode)
+    return track
 
 
 def _step(x, P, log_mode, z, F, Q, H, R, log_transition):
@@ -114,29 +119,20 @@ def _step(x, P, log_mode, z, F, Q, H, R, log_transition):
     # A model that cannot be reached has probability zero, but its state has to stay finite.
     joint = np.where(now[..., None, :] > -np.inf, joint, log_mode[..., :, None])
     weight = np.swapaxes(_shares(joint, axis=-2), -1, -2)
-    x, P = _moments(x[..., None, :, :], P[..., None, :, :, :], weight)
+    x, P = gaussian.mixture(x[..., None, :, :], P[..., None, :, :, :], weight)
 
-    x = (F @ x[..., None])[..., 0]
-    P = F @ P @ np.swapaxes(F, -1, -2) + Q
-    x, P, innovation, S = _update(x, P, z[..., None, :], H, R)
-    nis = np.sum(innovation * np.linalg.solve(S, innovation[..., None])[..., 0], axis=-1)
-    log_likelihood = -(nis + np.linalg.slogdet(S)[1]) / 2
-    log_mode = now + log_likelihood
+    x, P = gaussian.predict(x, P, F, Q)
+    innovation = gaussian.innovation(x, z[..., None, :], H)
+    x, P, S = gaussian.update(x, P, innovation, H, R)
+    log_mode = now + gaussian.log_density(innovation, S)
     return x, P, log_mode - log_mode.max(axis=-1, keepdims=True)
 
 
 def _shares(log_weight, axis):
     """Return weights that add to 1 along the axis; at least one of their logarithms is finite."""
-    weight = np.exp(log_weight - log_weight.max(axis=axis, keepdims=True))
-    return weight / weight.sum(axis=axis, keepdims=True)
-
-
-def _moments(x, P, weight):
-    """Return mean and covariance of mixtures: x (..., M, n), P (..., M, n, n), weight (..., M)."""
-    mean = np.sum(weight[..., None] * x, axis=-2)
-    off = x - mean[..., None, :]
-    spread = P + off[..., :, None] * off[..., None, :]
-    return mean, np.sum(weight[..., None, None] * spread, axis=-3)
+    with np.errstate(under="ignore"):  # a weight of zero is what it should be
+        weight = np.exp(log_weight - log_weight.max(axis=axis, keepdims=True))
+        return weight / weight.sum(axis=axis, keepdims=True)
 
 
 def _probabilities(name, value, shape):

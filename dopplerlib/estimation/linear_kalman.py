@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from . import gaussian
 from .track import Track
 
 
@@ -27,8 +28,8 @@ def kf_predict(x, P, F, Q):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, or `P` or `Q` is not a covariance (it may be
-        singular).
+        If shapes do not fit, a value is not finite, also of what comes out, or `P` or `Q` is not a
+        covariance (it may be singular).
 
     Notes
     -----
@@ -48,12 +49,14 @@ def kf_predict(x, P, F, Q):
     P = _checks.covariance("P", P, n, definite=False)
     F = _checks.finite("F", F, (n, n))
     Q = _checks.covariance("Q", Q, n, definite=False)
-    _check_leading({"x": (x, 1), "P": (P, 2), "F": (F, 2), "Q": (Q, 2)})
-    return _predict(x, P, F, Q)
+    _checks.check_leading(x=(x, 1), P=(P, 2), F=(F, 2), Q=(Q, 2))
+    x, P = gaussian.predict(x, P, F, Q)
+    _checks.estimates("x, P, F, Q", x, P)
+    return x, P
 
 
 def kf_update(x, P, z, H, R):
-    """Return the state and covariance after a measurement, in the form of Joseph.
+    """Return the state and covariance after a measurement, in Joseph form.
 
     Parameters
     ----------
@@ -62,7 +65,7 @@ def kf_update(x, P, z, H, R):
     P : array_like, shape (..., n, n)
         Predicted covariances.
     z : array_like, shape (..., m)
-        Measurements.
+        Measurements; NaN says that a component is missing. The others update alone.
     H : array_like, shape (..., m, n)
         Measurement matrix.
     R : array_like, shape (..., m, m)
@@ -74,13 +77,16 @@ def kf_update(x, P, z, H, R):
     x : ndarray, shape (..., n)
     P : ndarray, shape (..., n, n)
     innovation : ndarray, shape (..., m)
+        NaN where `z` is.
     S : ndarray, shape (..., m, m)
+        Of all components, also of those that are missing.
 
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, `P` is not a covariance (it may be
-        singular), or `R` is not positive definite.
+        If shapes do not fit, a value is not finite (but for a NaN in `z`), also of what comes out,
+        `P` is not a covariance (it may be singular), `R` is not positive definite, or so small
+        that S is singular to rounding.
 
     Notes
     -----
@@ -98,38 +104,14 @@ def kf_update(x, P, z, H, R):
     x = _checks.finite("x", x, (None,))
     n = x.shape[-1]
     P = _checks.covariance("P", P, n, definite=False)
-    z = _checks.finite("z", z, (None,))
+    z = _checks.measured("z", z, (None,))
     m = z.shape[-1]
     H = _checks.finite("H", H, (m, n))
     R = _checks.covariance("R", R, m)
-    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 1), "H": (H, 2), "R": (R, 2)})
-    return _update(x, P, z, H, R)
-
-
-def _check_leading(arguments):
-    """Raise unless the axes before the last one or two of all arguments broadcast."""
-    leading = {name: value.shape[: value.ndim - own] for name, (value, own) in arguments.items()}
-    try:
-        np.broadcast_shapes(*leading.values())
-    except ValueError:
-        got = ", ".join(f"{lead} of {name}" for name, lead in leading.items())
-        raise ValueError(
-            f"{', '.join(leading)} must have leading axes that broadcast, got {got}"
-        ) from None
-
-
-def _predict(x, P, F, Q):
-    return (F @ x[..., None])[..., 0], F @ P @ np.swapaxes(F, -1, -2) + Q
-
-
-def _update(x, P, z, H, R):
-    Ht = np.swapaxes(H, -1, -2)
-    innovation = z - (H @ x[..., None])[..., 0]
-    S = H @ P @ Ht + R
-    K = np.swapaxes(np.linalg.solve(S, H @ P), -1, -2)
-    A = np.eye(x.shape[-1]) - K @ H
-    x = x + (K @ innovation[..., None])[..., 0]
-    P = A @ P @ np.swapaxes(A, -1, -2) + K @ R @ np.swapaxes(K, -1, -2)
+    _checks.check_leading(x=(x, 1), P=(P, 2), z=(z, 1), H=(H, 2), R=(R, 2))
+    innovation = gaussian.innovation(x, z, H)
+    x, P, S = gaussian.update(x, P, innovation, H, R)
+    _checks.estimates("x, P, z, H, R", x, P, S, np.where(np.isnan(z), 0.0, innovation))
     return x, P, innovation, S
 
 
@@ -141,9 +123,10 @@ def kf(z, F, Q, H, R, x0, P0):
     Parameters
     ----------
     z : array_like, shape (..., K, m)
-        Measurements.
-    F, Q : array_like, shape (n, n)
-        Transition matrix; covariance of the process noise.
+        Measurements; NaN says that a component is missing at this sample.
+    F, Q : array_like, shape (n, n) or (K, n, n)
+        Transition matrix; covariance of the process noise. At uneven times one for each sample,
+        that of the step which leads to it.
     H : array_like, shape (m, n)
         Measurement matrix.
     R : array_like, shape (m, m)
@@ -151,18 +134,20 @@ def kf(z, F, Q, H, R, x0, P0):
     x0 : array_like, shape (..., n)
         State one step before the first measurement; leading axes broadcast against those of `z`.
     P0 : array_like, shape (..., n, n)
-        Its covariance.
+        Its covariance; it may be singular: a component can be known exactly.
 
     Returns
     -------
     Track
-        Leading axes are those of `z`.
+        Leading axes are those of `z`. What is missing is treated as by `ekf`: the components that
+        are there update alone, and NIS is theirs.
 
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, `R` or `P0` is not positive definite, or `Q`
-        is not a covariance (it may be singular).
+        If shapes do not fit, a value is not finite (but for a NaN in `z`), also of what comes out,
+        `R` is not positive definite, or so small that S is singular to rounding, or `P0` or `Q` is
+        not a covariance (it may be singular).
 
     Notes
     -----
@@ -180,32 +165,35 @@ def kf(z, F, Q, H, R, x0, P0):
     n = x0.shape[-1]
     H = _checks.matrix("H", H, (None, n))
     m = H.shape[0]
-    F = _checks.matrix("F", F, (n, n))
-    Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
     R = _checks.matrix("R", _checks.covariance("R", R, m), (m, m))
-    P0 = _checks.covariance("P0", P0, n)
-    z = _checks.finite("z", z, (None, m))
+    P0 = _checks.covariance("P0", P0, n, definite=False)
+    z = _checks.measured("z", z, (None, m))
     if not z.size:
         raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
-
     batch, samples = z.shape[:-2], z.shape[-2]
-    # Covariances do not depend on the measurements: runs that begin with one P0 share them all.
-    shared = P0.ndim == 2
+    F = _checks.each_sample("F", _checks.finite("F", F, (n, n)), samples, (n, n))
+    Q = _checks.covariance("Q", Q, n, definite=False)
+    Q = _checks.each_sample("Q", Q, samples, (n, n))
+
+    # Covariances do not depend on the measurements, only on which are there: runs that begin with
+    # one P0 and miss the same share them all.
+    there = ~np.isnan(z)
+    first = there.reshape(-1, samples, m)[0]
+    shared = P0.ndim == 2 and bool((there == first).all())
+    seen = first if shared else there
     x = _checks.each_run("x0", x0, batch, (n,))
     P = P0 if shared else _checks.each_run("P0", P0, batch, (n, n))
     steps = []
     for k in range(samples):
-        x, P = _predict(x, P, F, Q)
-        x, P, innovation, S = _update(x, P, z[..., k, :], H, R)
+        x, P = gaussian.predict(x, P, F[k], Q[k])
+        innovation = gaussian.innovation(x, z[..., k, :], H)
+        gain, P, S = gaussian.gain(P, H, R, seen[..., k, :])
+        x = gaussian.moved(x, gain, innovation)
         steps.append((x, P, innovation, S))
     x, P, innovation, S = zip(*steps, strict=True)
     x, innovation = (np.stack(values, axis=len(batch)) for values in (x, innovation))
-    P, S = (
-        np.broadcast_to(
-            np.stack(values, axis=0 if shared else len(batch)), (*batch, samples, size, size)
-        )
-        for values, size in ((P, n), (S, m))
-    )
-    weighted = np.linalg.solve(S, innovation[..., None])[..., 0]
-    nis = np.sum(innovation * weighted, axis=-1)
-    return Track(x, P, innovation, S, nis, np.ones(nis.shape, bool))
+    P, S = (np.stack(values, axis=0 if shared else len(batch)) for values in (P, S))
+    _checks.estimates("F, Q, H, R, x0, P0, z", x, P, S, np.where(there, innovation, 0.0))
+    nis = gaussian.quadratic_form(innovation, S)
+    P, S = (np.broadcast_to(v, (*batch, *v.shape[-3:])) for v in (P, S))
+    return Track(x, P, innovation, S, nis, there.any(axis=-1))

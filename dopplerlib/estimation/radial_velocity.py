@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from .linear_kalman import _check_leading, _update
+from . import gaussian
 
 
 @record
@@ -78,7 +78,7 @@ def radial_velocity_terms(x, P, sigma, variance="corrected"):
     P = _checks.covariance("P", P, x.shape[-1], definite=False)
     sigma = _checks.deviation("sigma", sigma)
     _checks.one_of("variance", variance, ("corrected", "printed"))
-    _check_leading({"x": (x, 1), "P": (P, 2), "sigma": (sigma, 0)})
+    _checks.check_leading(x=(x, 1), P=(P, 2), sigma=(sigma, 0))
     return _terms(x, P, sigma, variance)
 
 
@@ -92,8 +92,8 @@ def radial_velocity_update(x, P, z, sigma, variance="corrected"):
     P : array_like, shape (..., 2 n, 2 n)
         Its covariance.
     z : array_like, shape (...)
-        Measured radial velocity in m/s, positive when receding. Leading axes of all arguments
-        broadcast against one another.
+        Measured radial velocity in m/s, positive when receding; NaN where it is missing. Leading
+        axes of all arguments broadcast against one another.
     sigma : float or array_like, shape (...)
         Its standard deviation in m/s.
     variance : {"corrected", "printed"}
@@ -109,12 +109,12 @@ def radial_velocity_update(x, P, z, sigma, variance="corrected"):
     Raises
     ------
     ValueError
-        As `radial_velocity_terms`, or if `z` is not finite.
+        As `radial_velocity_terms`, or if `z` is infinite.
 
     Notes
     -----
     Åsheim (2015), Eqs 3.23 to 3.27, with the innovation z - trace(C) - h(x), as the code of the
-    thesis has it up to the first order, and the covariance in the form of Joseph.
+    thesis has it up to the first order, and the covariance in Joseph form.
 
     Examples
     --------
@@ -122,15 +122,15 @@ def radial_velocity_update(x, P, z, sigma, variance="corrected"):
     >>> x.tolist(), innovation.tolist(), S.tolist()
     ([2.0, 0.1], [0.2], [[2.0]])
     """
-    z = _checks.finite("z", z)
+    z = _checks.measured("z", z, ())
     x, P = _checks.finite("x", x, (None,)), _checks.finite("P", P, (None, None))
     sigma = _checks.deviation("sigma", sigma)
-    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 0), "sigma": (sigma, 0)})
+    _checks.check_leading(x=(x, 1), P=(P, 2), z=(z, 0), sigma=(sigma, 0))
     terms = radial_velocity_terms(x, P, sigma, variance)
-    # kf_update forms z - H x: what it has to see is the innovation plus H x.
-    linear = (terms.H @ x[..., None])[..., 0]
-    shifted = z[..., None] - terms.predicted + linear
-    return _update(x, P, shifted, terms.H, terms.R)
+    innovation = z[..., None] - terms.predicted
+    x, P, S = gaussian.update(x, P, innovation, terms.H, terms.R)
+    _checks.estimates("x, P, z, sigma", x, P, S)
+    return x, P, innovation, S
 
 
 def _terms(x, P, sigma, variance):
@@ -145,8 +145,11 @@ def _terms(x, P, sigma, variance):
     B[..., :n, n:] = B[..., n:, :n] = A / 2
     C = B @ P
     H = np.concatenate([(A @ v[..., None])[..., 0], u], axis=-1)[..., None, :]
-    other = np.swapaxes(C, -1, -2) if variance == "corrected" else C
-    extra = 2 * np.sum(C * other, axis=(-2, -1))
+    if variance == "corrected":  # The trace of C C, as a sum of squares: that of L' B L squared.
+        L = gaussian.square_root(P)
+        extra = 2 * np.sum((L.mT @ B @ L) ** 2, axis=(-2, -1))
+    else:
+        extra = 2 * np.sum(C**2, axis=(-2, -1))
     R = (sigma**2 + extra)[..., None, None]
     predicted = np.einsum("...i,...i->...", u, v) + np.trace(C, axis1=-2, axis2=-1)
     return RadialVelocity(H, C, R, predicted[..., None])

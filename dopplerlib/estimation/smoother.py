@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from . import gaussian
 
 
 def rts_smooth(x, P, F, Q):
@@ -11,11 +12,12 @@ def rts_smooth(x, P, F, Q):
     Parameters
     ----------
     x : array_like, shape (..., K, n)
-        Filtered states, after the updates.
+        Filtered states, after the updates or, in a gap, the predictions.
     P : array_like, shape (..., K, n, n)
-        Their covariances; leading axes broadcast against those of `x`.
-    F, Q : array_like, shape (n, n)
-        Transition matrix and process noise between two samples.
+        Their covariances, which may be singular; leading axes broadcast against those of `x`.
+    F, Q : array_like, shape (n, n) or (K, n, n)
+        Transition matrix and process noise between two samples. At uneven times as in `kf`: those
+        of the step which leads to each sample, of which the first is not used.
 
     Returns
     -------
@@ -26,13 +28,14 @@ def rts_smooth(x, P, F, Q):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, a matrix is not a covariance, or `F` and `Q`
-        predict a covariance that has no inverse.
+        If shapes do not fit, a value is not finite, also of what comes out, or a matrix is not a
+        covariance.
 
     Notes
     -----
     Rauch, Tung, Striebel (1965). It runs backwards and needs no measurements, and it waits for the
-    end of the record: nothing for a brake, everything for a reference path.
+    end of the record: nothing for a brake, everything for a reference path. Where a prediction is
+    singular, such as in a plane, the later samples teach nothing about what was certain before.
 
     Examples
     --------
@@ -46,23 +49,17 @@ def rts_smooth(x, P, F, Q):
     """
     x = _checks.finite("x", x, (None, None))
     K, n = x.shape[-2:]
-    P = _checks.covariance("P", P, n)
+    P = _checks.covariance("P", P, n, definite=False)
     _checks.check_shape("P", P, (K, n, n))
     _checks.check_broadcast("x", x.shape[:-2], "P", P.shape[:-3])
-    F = _checks.matrix("F", F, (n, n))
-    Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
-    x, P = x.copy(), P.copy()
+    F = _checks.each_sample("F", _checks.finite("F", F, (n, n)), K, (n, n))
+    Q = _checks.covariance("Q", Q, n, definite=False)
+    Q = _checks.each_sample("Q", Q, K, (n, n))
+    batch = np.broadcast_shapes(x.shape[:-2], P.shape[:-3])
+    x, P = np.broadcast_to(x, (*batch, K, n)).copy(), P.copy()
     for k in range(K - 2, -1, -1):
-        predicted = F @ P[..., k, :, :] @ F.T + Q
-        try:
-            gain = np.swapaxes(np.linalg.solve(predicted, F @ P[..., k, :, :]), -1, -2)
-        except np.linalg.LinAlgError:
-            raise ValueError(
-                f"F and Q must give F P F' + Q an inverse, got a singular matrix at sample {k}"
-            ) from None
-        ahead = x[..., k + 1, :] - x[..., k, :] @ F.T
-        x[..., k, :] += (gain @ ahead[..., None])[..., 0]
-        surprise = P[..., k + 1, :, :] - predicted
-        smoothed = P[..., k, :, :] + gain @ surprise @ np.swapaxes(gain, -1, -2)
-        P[..., k, :, :] = (smoothed + np.swapaxes(smoothed, -1, -2)) / 2
+        x[..., k, :], P[..., k, :, :] = gaussian.smooth(
+            x[..., k, :], P[..., k, :, :], F[k + 1], Q[k + 1], x[..., k + 1, :], P[..., k + 1, :, :]
+        )
+    _checks.estimates("x, P, F, Q", x, P)
     return x, P

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from . import gaussian
 
 
 def steady_state_gain(F, Q, H, R):
@@ -55,12 +56,12 @@ def steady_state_gain(F, Q, H, R):
         predicted = solve_discrete_are(F.T, H.T, Q, R)
     except np.linalg.LinAlgError:
         raise ValueError("F, H, Q must let the filter settle, got no stable solution") from None
-    K = np.linalg.solve(H @ predicted @ H.T + R, H @ predicted).T
+    K, P, _ = gaussian.gain(predicted, H, R)
     A = np.eye(n) - K @ H
     # A double eigenvalue of 1 comes out with an error of half the digits.
     if np.abs(np.linalg.eigvals(A @ F)).max() > 1 - 1e-7:
         raise ValueError("F, H, Q must let the filter settle, got errors that never die out")
-    return K, A @ predicted @ A.T + K @ R @ K.T
+    return K, P
 
 
 def steady_state_lag(F, H, K, push):

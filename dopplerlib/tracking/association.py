@@ -38,11 +38,10 @@ def nearest_neighbor(distance, accept=None):
     """
     distance = _checks.real("distance", distance)
     _checks.check_shape("distance", distance, (None,))
-    accept = np.ones(distance.shape, bool) if accept is None else np.asarray(accept)
-    if accept.dtype != bool or accept.shape != distance.shape:
+    accept = _checks.booleans("accept", np.ones(distance.shape, bool) if accept is None else accept)
+    if accept.shape != distance.shape:
         raise ValueError(
-            f"accept must be made of booleans, of shape {distance.shape} like distance, "
-            f"got {accept.dtype} of shape {accept.shape}"
+            f"accept must have shape {distance.shape} like distance, got {accept.shape}"
         )
     distance = np.where(accept & np.isfinite(distance), distance, np.inf)
     if not distance.shape[-1]:
@@ -140,6 +139,8 @@ def gnn_assign(cost, gate):
 
 def _costs(cost, gate):
     cost = _checks.real("cost", cost)
+    if cost.shape == (0,):  # no track
+        cost = cost.reshape(0, 0)
     if cost.ndim != 2:
         raise ValueError(f"cost must have shape (tracks, detections), got {cost.shape}")
     return np.where(np.isfinite(cost), cost, np.inf), _checks.one_number("gate", gate)

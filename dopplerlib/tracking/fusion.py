@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import _checks
-from ..estimation.linear_kalman import _check_leading
+from ..estimation import gaussian
 
 
 def fuse_state_vectors(x1, P1, x2, P2, P12=None):
@@ -14,7 +14,8 @@ def fuse_state_vectors(x1, P1, x2, P2, P12=None):
     x1, x2 : array_like, shape (..., n)
         Estimates of the same state.
     P1, P2 : array_like, shape (..., n, n)
-        Their covariances. Leading axes of all arguments broadcast against one another.
+        Their covariances, which may be singular. Leading axes of all arguments broadcast against
+        one another.
     P12 : array_like, shape (..., n, n), optional
         Covariance of the error of the first with that of the second; none if None. The difference
         of the two then has the covariance P1 + P2 - P12 - P12'.
@@ -27,14 +28,15 @@ def fuse_state_vectors(x1, P1, x2, P2, P12=None):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, or `P1`, `P2` or the covariance of the
-        difference is not positive definite.
+        If shapes do not fit, a value is not finite, `P1`, `P2`, or both together with `P12`, are
+        not a covariance, or the difference has with `P12` one that is not positive definite.
 
     Notes
     -----
     With A = P1 - P12, the estimate is x1 + A (P1 + P2 - P12 - P12')^-1 (x2 - x1): Bar-Shalom and
     Campo (1986). Without P12 it is Eqs 15 to 17 of Valarmathi et al., right only if the errors are
     independent. Those of two filters that follow one target never are: both miss its maneuvers.
+    A component that both know exactly, such as in a plane, is that of the first.
 
     Examples
     --------
@@ -46,11 +48,13 @@ def fuse_state_vectors(x1, P1, x2, P2, P12=None):
     >>> fuse_state_vectors([0.0], [[1.0]], [2.0], [[1.0]], [[0.5]])[1].tolist()
     [[0.75]]
     """
-    x1, P1, x2, P2 = _estimates(x1=x1, P1=P1, x2=x2, P2=P2)
+    x1, P1, x2, P2 = _estimates(False, x1=x1, P1=P1, x2=x2, P2=P2)
+    if P12 is None:
+        return _independent(x1, P1, x2, P2)
     n = x1.shape[-1]
-    P12 = np.zeros((n, n)) if P12 is None else _checks.finite("P12", P12, (n, n))
-    _check_leading({"x1": (x1, 1), "P1": (P1, 2), "x2": (x2, 1), "P2": (P2, 2), "P12": (P12, 2)})
-    S = P1 + P2 - P12 - np.swapaxes(P12, -1, -2)
+    P12 = _checks.finite("P12", P12, (n, n))
+    _checks.check_leading(x1=(x1, 1), P1=(P1, 2), x2=(x2, 1), P2=(P2, 2), P12=(P12, 2))
+    S = P1 + P2 - P12 - P12.mT
     try:
         np.linalg.cholesky(S)
     except np.linalg.LinAlgError:
@@ -58,13 +62,25 @@ def fuse_state_vectors(x1, P1, x2, P2, P12=None):
             "P12 must leave P1 + P2 - P12 - P12' positive definite, got a smallest eigenvalue of "
             f"{np.linalg.eigvalsh(S)[..., 0].min():.3g}"
         ) from None
-    return _fused(x1, P1, x2, P1 - P12, S)
+    P1, P12, P2 = np.broadcast_arrays(P1, P12, P2)
+    joint = np.block([[P1, P12], [P12.mT, P2]])
+    _checks.covariance("P12 with P1 and P2, [[P1, P12], [P12', P2]],", joint, 2 * n, definite=False)
+    W = np.linalg.solve(S, (P1 - P12).mT).mT
+    root = gaussian.square_root(joint)
+    x = gaussian.moved(x1, W, x2 - x1)
+    P = gaussian.squared(np.concatenate([np.eye(n) - W, W], axis=-1) @ root)
+    _checks.estimates("x1, P1, x2, P2, P12", x, P)
+    return x, P
 
 
-def _fused(x1, P1, x2, A, S):
-    W = np.swapaxes(np.linalg.solve(S, np.swapaxes(A, -1, -2)), -1, -2)
-    x = x1 + (W @ (x2 - x1)[..., None])[..., 0]
-    return x, P1 - W @ np.swapaxes(A, -1, -2)
+def _independent(x1, P1, x2, P2):
+    """Return the fusion of independent estimates; what both know exactly is that of the first."""
+    W = gaussian.solve(P1 + P2, P1).mT
+    A = np.eye(x1.shape[-1]) - W
+    parts = np.broadcast_arrays(A @ gaussian.square_root(P1), W @ gaussian.square_root(P2))
+    x, P = gaussian.moved(x1, W, x2 - x1), gaussian.squared(np.concatenate(parts, axis=-1))
+    _checks.estimates("the two estimates", x, P)
+    return x, P
 
 
 def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
@@ -109,7 +125,7 @@ def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
         H = _checks.finite(H_name, H, (K.shape[-1], n))
         leading |= {K_name: (K, 2), H_name: (H, 2)}
         keep.append((K, H))
-    _check_leading(leading)
+    _checks.check_leading(**leading)
     keep = [np.eye(n) - K @ H for K, H in keep]
     return keep[0] @ (F @ P12 @ np.swapaxes(F, -1, -2) + Q) @ np.swapaxes(keep[1], -1, -2)
 
@@ -137,8 +153,8 @@ def covariance_intersection(x1, P1, x2, P2, w=None):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, `P1` or `P2` is not positive definite, or
-        `w` is not from 0 to 1.
+        If shapes do not fit, a value is not finite, `P1` or `P2` is not a covariance (it may be
+        singular), or `w` is not from 0 to 1.
 
     Notes
     -----
@@ -153,20 +169,28 @@ def covariance_intersection(x1, P1, x2, P2, w=None):
     >>> x.round(2).tolist(), P.round(2).tolist()
     ([0.9, 0.9], [[1.8, 0.0], [0.0, 1.8]])
     """
-    x1, P1, x2, P2 = _estimates(x1=x1, P1=P1, x2=x2, P2=P2)
-    I1, I2 = np.linalg.inv(P1), np.linalg.inv(P2)
+    x1, P1, x2, P2 = _estimates(False, x1=x1, P1=P1, x2=x2, P2=P2)
     if w is None:
         w = _best_weight(P1, P2)
     else:
         w = _checks.finite("w", w)
         if ((w < 0) | (w > 1)).any():
             raise ValueError(f"w must be from 0 to 1, got {w}")
-        leading = {"x1": (x1, 1), "P1": (P1, 2), "x2": (x2, 1), "P2": (P2, 2), "w": (w, 0)}
-        _check_leading(leading)
+        _checks.check_leading(x1=(x1, 1), P1=(P1, 2), x2=(x2, 1), P2=(P2, 2), w=(w, 0))
     w = w[..., None, None]
-    P = np.linalg.inv(w * I1 + (1 - w) * I2)
-    information = w * (I1 @ x1[..., None]) + (1 - w) * (I2 @ x2[..., None])
-    return (P @ information)[..., 0], P
+    # P is P1 M P2 with the inverse M of this sum, which also holds for the weights 0 and 1. Written
+    # as w B P1 B' + (1 - w) A P2 A' with A = P1 M and B = P2 M, it is a sum of squares.
+    both = (1 - w) * P1 + w * P2
+    A = np.where(w > 0, gaussian.solve(both, P1).mT, np.eye(P1.shape[-1]))
+    B = np.where(w < 1, gaussian.solve(both, P2).mT, np.eye(P1.shape[-1]))
+    L1, L2 = gaussian.square_root(P1), gaussian.square_root(P2)
+    parts = np.broadcast_arrays(np.sqrt(w) * (B @ L1), np.sqrt(1 - w) * (A @ L2))
+    x, P = (
+        gaussian.moved(x1, (1 - w) * A, x2 - x1),
+        gaussian.squared(np.concatenate(parts, axis=-1)),
+    )
+    _checks.estimates("x1, P1, x2, P2", x, P)
+    return x, P
 
 
 def fuse_measurements(z1, R1, z2, R2):
@@ -202,32 +226,42 @@ def fuse_measurements(z1, R1, z2, R2):
     >>> z.round(3).tolist(), R.round(3).tolist()
     ([2.0], [[0.667]])
     """
-    z1, R1, z2, R2 = _estimates(z1=z1, R1=R1, z2=z2, R2=R2)
-    return _fused(z1, R1, z2, R1, R1 + R2)
+    return _independent(*_estimates(True, z1=z1, R1=R1, z2=z2, R2=R2))
 
 
-def _estimates(**named):
+def _estimates(definite, **named):
     """Return the checked estimate, covariance, estimate, covariance that come in this order."""
     a, A, b, B = named
     named[a] = _checks.finite(a, named[a], (None,))
     n = named[a].shape[-1]
     named[b] = _checks.finite(b, named[b], (n,))
-    named[A], named[B] = _checks.covariance(A, named[A], n), _checks.covariance(B, named[B], n)
-    _check_leading({a: (named[a], 1), A: (named[A], 2), b: (named[b], 1), B: (named[B], 2)})
+    for name in (A, B):
+        named[name] = _checks.covariance(name, named[name], n, definite)
+    _checks.check_leading(
+        **{a: (named[a], 1), A: (named[A], 2), b: (named[b], 1), B: (named[B], 2)}
+    )
     return named.values()
 
 
 def _best_weight(P1, P2):
     """Return the weights (...) with the least determinant of the intersection."""
-    # In the basis where P1 is the identity, P2^-1 has the eigenvalues r: the slope of
-    # sum log(w + (1 - w) r) falls from w = 0 to w = 1.
-    L = np.linalg.cholesky(P1)
-    half = np.linalg.solve(L, P2)
-    r = 1 / np.linalg.eigvalsh(np.linalg.solve(L, np.swapaxes(half, -1, -2)))
-    low, high = np.zeros(r.shape[:-1]), np.ones(r.shape[:-1])
+    # Where P1 + P2 is the identity, P1 and P2 are diagonal, with a and b = 1 - a there. The slope
+    # of sum log(w / a + (1 - w) / b) falls from w = 0 to w = 1. Singular values, whose squares a
+    # and b are, never come out negative.
+    P1, P2 = np.broadcast_arrays(P1, P2)
+    root = gaussian.square_root(P1 + P2)
+    white = gaussian.solve(P1 + P2, root).mT
+    # For what both know exactly no weight is better: one half each.
+    rest = np.sqrt(0.5) * (np.eye(P1.shape[-1]) - white @ root)
+    a, b = (
+        np.linalg.svd(np.concatenate([white @ half, rest], axis=-1), compute_uv=False) ** 2
+        for half in (gaussian.square_root(P1), gaussian.square_root(P2))
+    )
+    b = b[..., ::-1]
+    low, high = np.zeros(a.shape[:-1]), np.ones(a.shape[:-1])
     for _ in range(52):
         w = (low + high) / 2
-        rising = np.sum((1 - r) / (w[..., None] + (1 - w[..., None]) * r), axis=-1) > 0
+        rising = np.sum((b - a) / (w[..., None] * b + (1 - w[..., None]) * a), axis=-1) > 0
         low, high = np.where(rising, w, low), np.where(rising, high, w)
     # Of two equal covariances no weight is better: the middle then, not what rounding prefers.
-    return np.where(np.abs(1 - r).max(axis=-1) < 1e-9, 0.5, (low + high) / 2)
+    return np.where(np.abs(b - a).max(axis=-1) < 1e-9, 0.5, (low + high) / 2)

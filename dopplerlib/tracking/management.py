@@ -97,10 +97,17 @@ class TrackManager:
         -------
         TrackLife
             Once deleted, a track stays so.
+
+        Raises
+        ------
+        ValueError
+            If `life` is no TrackLife, or `detected` no boolean.
         """
+        _checks.instance("life", life, TrackLife)
+        detected = _checks.one_boolean("detected", detected)
         if life.status == DELETED:
             return life
-        recent = (*life.recent, bool(detected))[-self.window :]
+        recent = (*life.recent, detected)[-self.window :]
         misses = 0 if detected else life.misses + 1
         age, status = life.age + 1, life.status
         if status == CONFIRMED:

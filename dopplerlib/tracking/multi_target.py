@@ -4,9 +4,10 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from ..estimation.extended_update import _corrected, _innovation
+from ..estimation import gaussian
+from ..estimation.extended_update import linearized
 from .association import gnn_assign
-from .management import CONFIRMED, DELETED
+from .management import CONFIRMED, DELETED, TrackManager
 
 
 @record
@@ -41,8 +42,9 @@ def track_scans(
 
     Parameters
     ----------
-    scans : sequence of ndarray, shape (detections, m)
-        Measurements of each scan; their number may vary.
+    scans : iterable of array_like, shape (detections, m)
+        Measurements of each scan; their number may vary, also to none. One with a NaN in it is not
+        there: detections with other components cannot be compared.
     F, Q : array_like, shape (n, n)
         Transition matrix; covariance of the process noise between two scans.
     h, H : callable
@@ -57,7 +59,7 @@ def track_scans(
         Probability of the chi-square gate.
     assign : callable
         `gnn_assign` or `greedy_assign`: takes NIS of all pairs and the size of the gate.
-    wrap : sequence of int
+    wrap : iterable of int
         Components of the measurement that are angles.
     new : callable, optional
         Takes measurements (detections, m), returns booleans (detections,): which of them may start
@@ -71,8 +73,10 @@ def track_scans(
     Raises
     ------
     ValueError
-        If shapes do not fit, also those that `start`, `h`, `H` and `new` return; a value is not
-        finite; `Q` or `R` is not a covariance; or `probability` is not between 0 and 1.
+        If shapes do not fit, also those that `start`, `h`, `H`, `assign` and `new` return; a value
+        is not finite, also of an estimate; `Q` or `R` is not a covariance, or `R` so small that the
+        covariance of an innovation is singular to rounding; `manager` is no TrackManager; or
+        `probability` is not between 0 and 1.
 
     Notes
     -----
@@ -100,51 +104,73 @@ def track_scans(
     F = _checks.matrix("F", F, (n, n))
     Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
     size = chdtri(m, 1 - _checks.probability("probability", probability))
+    _checks.instance("manager", manager, TrackManager)
+    wrap = _checks.components("wrap", wrap, m)
+    for name, value in (("start", start), ("assign", assign), ("new", new)):
+        if value is not None or name != "new":
+            _checks.function(name, value)
     done, alive = [], []
-    for number, scan in enumerate(scans):
-        z = _checks.matrix(f"scans[{number}]", scan, (None, m))
-        may_start = np.ones(len(z), bool) if new is None or not len(z) else _allowed(new(z), len(z))
+    for number, scan in enumerate(_checks.iterable("scans", scans)):
+        z = _checks.detections(f"scans[{number}]", scan, m)
+        z = _checks.one_matrix(f"scans[{number}]", z)
+        places = np.flatnonzero(~np.isnan(z).any(axis=-1))
+        z = z[places]
+        may_start = np.ones(len(z), bool)
+        if new is not None and len(z):
+            may_start = _checks.booleans("new(z)", new(z), (len(z),))
         free = np.ones(len(z), bool)
         if alive:
-            x = np.stack([track["x"][-1] for track in alive]) @ F.T
-            P = F @ np.stack([track["P"][-1] for track in alive]) @ F.T + Q
-            nu, S, J = _innovation(x[:, None], P[:, None], z, h, H, R, wrap)
-            S, J = S[:, 0], np.broadcast_to(J, (len(alive), 1, *J.shape[-2:]))[:, 0]
-            cost = np.sum(nu * np.linalg.solve(S, nu.swapaxes(1, 2)).swapaxes(1, 2), axis=-1)
+            x, P = (np.stack([track[name][-1] for track in alive]) for name in ("x", "P"))
+            x, P = gaussian.predict(x, P, F, Q)
+            _checks.estimates("F, Q", x, P)
+            nu, J = linearized(x[:, None], z, h, H, wrap)
+            J = np.broadcast_to(J, (len(alive), 1, *J.shape[-2:]))[:, 0]
+            K, updated, S = gaussian.gain(P, J, R)
+            cost = gaussian.quadratic_forms(nu, S)
             cost = np.where(cost <= size, cost, np.inf)
             first = np.array([track["confirmed"][-1] for track in alive])
             assigned = np.full(len(alive), -1)
             for some, open_to_them in ((first, True), (~first, may_start)):
                 if some.any():
                     pairs = np.where(free & open_to_them, cost[some], np.inf)
-                    assigned[some] = assign(pairs, size)
+                    assigned[some] = _assignment(assign(pairs, size), pairs)
                     free[assigned[assigned >= 0]] = False
             seen = assigned >= 0
-            x[seen], P[seen] = _corrected(
-                x[seen], P[seen], nu[seen, assigned[seen]], S[seen], J[seen], R
-            )
+            x[seen] = gaussian.moved(x[seen], K[seen], nu[seen, assigned[seen]])
+            P[seen] = updated[seen]
+            _checks.estimates("h, H, R", x, P)
             for i, track in enumerate(alive):
-                _extend(track, number, x[i], P[i], assigned[i], manager)
+                place = places[assigned[i]] if seen[i] else -1
+                _extend(track, number, x[i], P[i], place, manager)
         left = np.flatnonzero(may_start & free)
         x, P = _started(start(z[left]), len(left), n) if len(left) else ((), ())
-        begun = [_begin(number, *state, manager) for state in zip(x, P, left, strict=True)]
+        begun = [_begin(number, *state, manager) for state in zip(x, P, places[left], strict=True)]
         done += begun
         alive = [track for track in alive if track["life"].status != DELETED] + begun
     return [_frozen(track) for track in done]
 
 
-def _allowed(value, detections):
-    value = np.asarray(value)
-    if value.dtype != bool or value.shape != (detections,):
+def _assignment(value, cost):
+    """Return what `assign` gave: for each track a detection, none twice, or -1."""
+    tracks, detections = cost.shape
+    array = np.asarray(value)
+    good = array.dtype.kind in "iu" and array.shape == (tracks,)
+    if good:
+        taken = array[array >= 0]
+        good = array.min() >= -1 and array.max() < detections and len(set(taken)) == len(taken)
+    if not good:
         raise ValueError(
-            f"new(z) must be made of booleans, of shape {(detections,)}, "
-            f"got {value.dtype} of shape {value.shape}"
+            f"assign(cost, gate) must be whole numbers of shape {(tracks,)} from -1 to "
+            f"{detections - 1}, none but -1 twice, got {array.tolist()}"
         )
-    return value
+    return array
 
 
 def _started(states, count, n):
-    x, P = states
+    try:
+        x, P = states
+    except (TypeError, ValueError):
+        raise ValueError(f"start(z) must be a pair (x, P), got {states!r}") from None
     P = _checks.covariance("start(z)[1]", P, n, definite=False)
     _checks.check_shape("start(z)[1]", P, (count, n, n))
     return _checks.finite("start(z)[0]", x, (count, n)), P

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from ..estimation.linear_kalman import _check_leading
+from ..estimation import gaussian
 
 
 @record
@@ -37,9 +37,10 @@ def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
     x : array_like, shape (..., n)
         Predicted states.
     P : array_like, shape (..., n, n)
-        Predicted covariances, positive definite.
+        Predicted covariances; they may be singular.
     z : array_like, shape (..., M, m)
-        Detections; a detection with a NaN in it is not there.
+        Detections; there may be none. One with a NaN in it is not there: densities of detections
+        with other components cannot be compared.
     H : array_like, shape (..., m, n)
         Measurement matrix.
     R : array_like, shape (..., m, m)
@@ -59,8 +60,10 @@ def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
     Raises
     ------
     ValueError
-        If a shape does not fit, a value is not finite (but for a NaN in `z`), `P` or `R` is not
-        positive definite, a probability is not between 0 and 1, or `density` is not positive.
+        If a shape does not fit, a value is not finite (but for a NaN in `z`), also of what comes
+        out, `P` is not a covariance (it may be singular), `R` is not positive definite, or so small
+        that the covariance of an innovation is singular to rounding, a probability is not between 0
+        and 1, or `density` is not positive.
 
     Notes
     -----
@@ -81,34 +84,40 @@ def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
 
     x = _checks.finite("x", x, (None,))
     n = x.shape[-1]
-    P = _checks.covariance("P", P, n)
-    z = _checks.real("z", z)
-    _checks.check_shape("z", z, (None, None))
-    if np.isinf(z).any():
-        raise ValueError("z must be finite, or NaN where it is missing, got an infinite value")
-    m = z.shape[-1]
-    H = _checks.finite("H", H, (m, n))
+    P = _checks.covariance("P", P, n, definite=False)
+    H = _checks.finite("H", H, (None, n))
+    m = H.shape[-2]
+    z = _checks.detections("z", z, m)
     R = _checks.covariance("R", R, m)
-    _check_leading({"x": (x, 1), "P": (P, 2), "z": (z, 2), "H": (H, 2), "R": (R, 2)})
+    _checks.check_leading(x=(x, 1), P=(P, 2), z=(z, 2), H=(H, 2), R=(R, 2))
     detection, gate = _checks.probability("detection", detection), _checks.probability("gate", gate)
     density = _checks.positive_number("density", density)
 
-    Ht = np.swapaxes(H, -1, -2)
-    S = H @ P @ Ht + R
-    K = np.swapaxes(np.linalg.solve(S, H @ P), -1, -2)
-    nu = z - (H @ x[..., None])[..., None, :, 0]
+    K, updated, S = gaussian.gain(P, H, R)
+    nu = gaussian.innovation(x[..., None, :], z, H[..., None, :, :])
     there = ~np.isnan(nu).any(axis=-1)
     nu = np.where(there[..., None], nu, 0.0)
-    nis = np.sum(nu * np.linalg.solve(S[..., None, :, :], nu[..., None])[..., 0], axis=-1)
-    inside = there & (nis <= chi2.ppf(gate, m))
-    volume = np.sqrt(np.linalg.det(2 * np.pi * S))[..., None]
-    odds = np.where(inside, detection / density * np.exp(-nis / 2) / volume, 0.0)
-    none = 1 - detection * gate
-    total = none + odds.sum(axis=-1)
-    weight, missed = odds / total[..., None], none / total
-    mean = np.einsum("...j,...ji->...i", weight, nu)
-    second = np.einsum("...j,...ji,...jk->...ik", weight, nu, nu)
-    spread = second - mean[..., :, None] * mean[..., None, :] - (1 - missed)[..., None, None] * S
-    x = x + (K @ mean[..., None])[..., 0]
-    P = P + K @ spread @ np.swapaxes(K, -1, -2)
-    return PdaUpdate(x, (P + np.swapaxes(P, -1, -2)) / 2, missed, weight)
+    inside = there & (gaussian.quadratic_forms(nu, S) <= chi2.ppf(gate, m))
+    nu = np.where(inside[..., None], nu, 0.0)
+    odds = np.log(detection) - np.log(density) + gaussian.log_density(nu, S[..., None, :, :])
+    weight, missed = _shares(np.where(inside, odds, -np.inf), np.log1p(-detection * gate))
+
+    # The mixture of the prediction and the updates with each detection: all move by K, and what
+    # is updated has one covariance.
+    mean = np.sum(weight[..., None] * nu, axis=-2)
+    off = np.sqrt(weight)[..., None] * (nu - mean[..., None, :])
+    stay = np.sqrt(missed)[..., None] * mean
+    spread = gaussian.squared(K @ np.concatenate([off, stay[..., None, :]], axis=-2).mT)
+    share = missed[..., None, None]
+    x, P = gaussian.moved(x, K, mean), share * P + (1 - share) * updated + spread
+    _checks.estimates("x, P, z, H, R", x, P, weight)
+    return PdaUpdate(x, P, missed, weight)
+
+
+def _shares(odds, none):
+    """Return the probabilities of all detections and of none from the logarithms of their odds."""
+    most = np.maximum(odds.max(axis=-1, initial=-np.inf), none)
+    with np.errstate(under="ignore"):  # a probability of zero is what it should be
+        odds, none = np.exp(odds - most[..., None]), np.exp(none - most)
+        total = none + odds.sum(axis=-1)
+        return odds / total[..., None], none / total

@@ -168,7 +168,7 @@ def test_an_estimate_and_itself_or_what_cannot_be_are_refused():
 
 def test_what_does_not_fit_is_refused():
     x, P = np.zeros(2), np.eye(2)
-    with pytest.raises(ValueError, match="P2 must be positive definite"):
+    with pytest.raises(ValueError, match="P2 must be positive semidefinite"):
         fuse_state_vectors(x, P, x, -P)
     with pytest.raises(ValueError, match="x2 must have shape"):
         fuse_state_vectors(x, P, np.zeros(3), P)

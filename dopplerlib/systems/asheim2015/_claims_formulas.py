@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...estimation.linear_kalman import _predict, _update
+from ...estimation import gaussian
 from ...estimation.radial_velocity import radial_velocity_terms
 from ...evaluation.verdicts import Readings
 from ...model.range_rate import range_rate, range_rate_jacobian
@@ -88,11 +88,11 @@ def gate_growth(own, early=2, late=450):
     F = np.array([[1.0, own.T], [0.0, 1.0]])
     P, widths = own.P0, []
     for k in range(late + 1):
-        _, P = _predict(np.zeros(2), P, F, own.Q)
+        _, P = gaussian.predict(np.zeros(2), P, F, own.Q)
         S = P[0, 0] + own.R(1.0)[0]
         widths.append(np.sqrt(c * sigma / S * S))
         if k < late - 100:
-            _, P, _, _ = _update(np.zeros(2), P, np.zeros(2), np.eye(2), np.diag(own.R(1.0)))
+            _, P, _ = gaussian.gain(P, np.eye(2), np.diag(own.R(1.0)))
     return round(float(widths[late] / widths[early]), 9)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ... import _checks
-from ...estimation.linear_kalman import _predict, _update
+from ...estimation import gaussian
 from ...estimation.radial_velocity import radial_velocity_update
 from ...evaluation.intervals import share_interval
 from ...evaluation.verdicts import Draws, Readings
@@ -297,9 +297,12 @@ def _largest_step_difference(z, own):
     F, R = np.array([[1.0, own.T], [0.0, 1.0]]), np.diag(own.R(1.0))
     largest = 0.0
     for one in z[1:]:
-        x, P, _, _ = _update(*_predict(x, P, F, own.Q), one, np.eye(2), R)
-        x_pseudo, P_pseudo = _predict(x_pseudo, P_pseudo, F, own.Q)
-        x_pseudo, P_pseudo, _, _ = _update(x_pseudo, P_pseudo, one[:1], np.eye(2)[:1], R[:1, :1])
+        x, P = gaussian.predict(x, P, F, own.Q)
+        x, P, _ = gaussian.update(x, P, one - x, np.eye(2), R)
+        x_pseudo, P_pseudo = gaussian.predict(x_pseudo, P_pseudo, F, own.Q)
+        x_pseudo, P_pseudo, _ = gaussian.update(
+            x_pseudo, P_pseudo, one[:1] - x_pseudo[:1], np.eye(2)[:1], R[:1, :1]
+        )
         x_pseudo, P_pseudo, _, _ = radial_velocity_update(
             x_pseudo, P_pseudo, one[1], np.sqrt(R[1, 1])
         )

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ... import _checks
+from ...estimation import gaussian
 from ...estimation.extended_update import ekf_update
-from ...estimation.linear_kalman import _predict, _update
 from ...model.kinematics import ncv_transition, wna_process_noise
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...tracking.bilateration import bilaterate
@@ -65,7 +65,7 @@ def central_filter(records, settings, *, q=None, start=None):
         used, values = [np.ones(runs, bool)] * 2, [np.full(runs, np.nan)] * 2
         for n in range(2):
             if k or n:
-                x, P = _predict(x, P, *motion[n])
+                x, P = gaussian.predict(x, P, *motion[n])
             if k:
                 x, P, used[n], values[n] = _step(x, P, z[:, n, k], records.sensors[n], settings)
         steps.append((x, P, np.stack(used, axis=-1), np.stack(values, axis=-1)))
@@ -110,7 +110,7 @@ def table_3_2(records, *, Q=None, start=None):
     F = ncv_transition(records.time[1] - records.time[0], dim=2, order="derivative")
     steps = [(x, P)]
     for k in range(1, measured.shape[1]):
-        x, P = _predict(x, P, F, Q)
+        x, P = gaussian.predict(x, P, F, Q)
         x, P, _, _ = ekf_update(x, P, measured[:, k], polar, polar_jacobian, R, wrap=(1,))
         steps.append((x, P))
     x, P = (np.stack(part, axis=1) for part in zip(*steps, strict=True))
@@ -167,8 +167,7 @@ def _step(x, P, z, sensor, settings):
     H = range_rate_jacobian(x, sensor[None])[:, 0]
     R = settings.R(predicted[:, 0])[..., None] * np.eye(2)
     nu = z - predicted
-    linear = (H @ x[..., None])[..., 0]
-    xu, Pu, _, S = _update(x, P, nu + linear, H, R)
+    xu, Pu, S = gaussian.update(x, P, nu, H, R)
     # The quadratic form of the inverse of S, written out: a solver takes longer.
     d, v, a, b, c = nu[:, 0], nu[:, 1], S[:, 0, 0], S[:, 0, 1], S[:, 1, 1]
     nis = (c * d * d - 2 * b * d * v + a * v * v) / (a * c - b * b)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ... import _checks
-from ...estimation.linear_kalman import _predict, _update
+from ...estimation import gaussian
 from ...tracking.association import gnn_assign
 from ...tracking.gates import chi2_gate
 from ...tracking.management import CONFIRMED, DELETED, TrackManager
@@ -46,7 +46,7 @@ def managed_tracks(time, detections, settings, manager=None):
         found = z[k][np.isfinite(z[k]).all(axis=-1)]
         cost = np.full((len(alive), len(found)), np.inf)
         for i, track in enumerate(alive):
-            track["state"], track["P"] = _predict(track["state"], track["P"], F, settings.Q)
+            track["state"], track["P"] = gaussian.predict(track["state"], track["P"], F, settings.Q)
             track["R"] = settings.R(track["state"][0]) * np.eye(2)
             nu = found - track["state"]
             S = track["P"] + track["R"]
@@ -55,8 +55,9 @@ def managed_tracks(time, detections, settings, manager=None):
         taken = gnn_assign(cost, gate=1e3) if alive and len(found) else [-1] * len(alive)
         for track, j in zip(alive, taken, strict=True):
             if j >= 0:
-                track["state"], track["P"], _, _ = _update(
-                    track["state"], track["P"], found[j], H, track["R"]
+                nu = found[j] - track["state"]
+                track["state"], track["P"], _ = gaussian.update(
+                    track["state"], track["P"], nu, H, track["R"]
                 )
             track["life"] = manager.advance(track["life"], j >= 0)
             track["confirmed"] |= track["life"].status == CONFIRMED
@@ -162,7 +163,7 @@ def pda_radar(detections, settings, *, x0):
     F = np.array([[1.0, settings.T], [0.0, 1.0]])
     steps = [(x, np.full(batch, np.nan))]
     for k in range(1, z.shape[-3]):
-        x, P = _predict(x, P, F, settings.Q)
+        x, P = gaussian.predict(x, P, F, settings.Q)
         R = settings.R(x[..., 0])[..., None] * np.eye(2)
         step = pda_update(
             x, P, z[..., k, :, :], np.eye(2), R,

@@ -3,7 +3,8 @@
 import numpy as np
 
 from ... import _checks
-from ...estimation import extended_update, linear_kalman
+from ...estimation import gaussian
+from ...estimation.extended_update import linearized
 from ...estimation.track import Track
 from ...model.kinematics import ncv_transition
 from ...model.polar_radar import polar_position, polar_radar_h, polar_radar_jacobian
@@ -106,10 +107,11 @@ def ekf(z, s=None):
     _checks.finite("z[:, 0], where the track starts,", z[:, 0], (3,))
     R = noise()
 
-    def update(x, P, z):
-        return extended_update._update(x, P, z, polar_radar_h, polar_radar_jacobian, R, wrap=(1,))
+    def model(x, z):
+        innovation, J = linearized(x, z, polar_radar_h, polar_radar_jacobian, wrap=(1,))
+        return innovation, J, R
 
-    return _track(z, s, start(z[:, 0]), update)
+    return _track(z, s, start(z[:, 0]), model)
 
 
 def naive(z, s=None):
@@ -144,25 +146,25 @@ def naive(z, s=None):
     full[..., 1::2] = z[..., 2:] * along
     radar = sensor()
 
-    def update(x, P, both):
+    def model(x, both):
         cartesian, seen = both[..., :4], both[..., 4:]
         _, E_z = start(seen)
         # Whoever takes the vector for the velocity takes it to be as good across as along.
         E_z[..., 1::2, 1::2] = radar["sigma_rate"] ** 2 * np.eye(2)
-        return linear_kalman._update(x, P, cartesian, np.eye(4), E_z)
+        return cartesian - x, np.eye(4), E_z
 
-    return _track(np.concatenate([full, z], axis=-1), s, start(z[:, 0]), update)
+    return _track(np.concatenate([full, z], axis=-1), s, start(z[:, 0]), model)
 
 
-def _track(z, s, begin, update):
-    """Filter with an update that does not check its arguments: they are ours."""
+def _track(z, s, begin, model):
+    """Filter with a function that returns innovation, H and R of predicted states and a scan."""
     F, Q = ncv_transition(s.T), s.E_x
     x, P = begin
     steps = [(x, P, np.full(len(x), np.nan))]
     for k in range(1, z.shape[1]):
-        x, P = x @ F.T, F @ P @ F.T + Q
-        x, P, innovation, S = update(x, P, z[:, k])
-        weighted = np.linalg.solve(S, innovation[..., None])[..., 0]
-        steps.append((x, P, np.sum(innovation * weighted, axis=-1)))
+        x, P = gaussian.predict(x, P, F, Q)
+        innovation, H, R = model(x, z[:, k])
+        x, P, S = gaussian.update(x, P, innovation, H, R)
+        steps.append((x, P, gaussian.quadratic_form(innovation, S)))
     x, P, score = (np.stack(values, axis=1) for values in zip(*steps, strict=True))
     return Track(x, P, None, None, score, np.isfinite(score))
