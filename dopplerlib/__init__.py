@@ -1,10 +1,10 @@
 """Doppler-only radar tracking: models, filters and their evaluation.
 
-Names are loaded when they are first used (PEP 562), so that importing the library costs nothing
-and asks for numba only where a filter runs.
+Names and packages are loaded when they are first used (PEP 562), so that importing the library
+costs nothing and asks for numba only where a filter runs.
 """
 
-from importlib import import_module
+from ._lazy import attach
 
 _HOME = {
     "RadarArray": "model.radar_array",
@@ -52,13 +52,4 @@ _HOME = {
 
 __all__ = sorted(_HOME)
 __version__ = "0.1.0"
-
-
-def __getattr__(name):
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f".{_HOME[name]}", __name__), name)
-
-
-def __dir__():
-    return __all__
+__getattr__, __dir__ = attach(__name__, __path__, _HOME)

@@ -4,6 +4,7 @@ import inspect
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,10 @@ import dopplerlib
 ROOT = Path(__file__).resolve().parents[1]
 HEAVY = ("sympy", "matplotlib", "numba", "scipy")
 CLASSES = sorted(name for name in dopplerlib.__all__ if inspect.isclass(getattr(dopplerlib, name)))
+PACKAGES = sorted(
+    ".".join(("dopplerlib", *path.parent.relative_to(ROOT / "dopplerlib").parts))
+    for path in (ROOT / "dopplerlib").rglob("__init__.py")
+)
 FUNCTIONS = sorted(set(dopplerlib.__all__) - set(CLASSES))
 
 
@@ -79,8 +84,45 @@ def test_every_public_name_is_there(name):
     assert getattr(dopplerlib, name) is value
 
 
+@pytest.mark.parametrize("name", PACKAGES)
+def test_every_module_is_an_attribute_of_its_package_from_the_start(name):
+    package = import_module(name)
+    there = {
+        path.stem if path.is_file() else path.name
+        for path in Path(package.__file__).parent.iterdir()
+        if path.suffix == ".py" or (path / "__init__.py").is_file()
+    }
+    public = {module for module in there if not module.startswith("_")}
+    assert public and public <= set(dir(package))
+    for module in public:  # asked so, it does not matter what has been imported before
+        assert package.__getattr__(module) is import_module(f"{name}.{module}")
+    for module in ("_lazy", "nothing"):
+        with pytest.raises(AttributeError, match=f"module '{name}' has no attribute '{module}'"):
+            package.__getattr__(module)
+
+
+def test_a_package_is_there_whatever_ran_before():
+    code = "import dopplerlib; dopplerlib.evaluation.consistency.nees; dopplerlib.signal"
+    assert loaded_after(code) == []
+
+
+def test_what_is_not_installed_is_named_with_the_command_that_installs_it(monkeypatch):
+    for library, package, extra in [
+        ("matplotlib", "figures", "figures"),
+        ("sympy", "derive", "derive"),
+    ]:
+        monkeypatch.setitem(sys.modules, library, None)
+        monkeypatch.delitem(sys.modules, f"dopplerlib.{package}", raising=False)
+        with pytest.raises(ModuleNotFoundError, match=library) as told:
+            import_module(f"dopplerlib.{package}")
+        assert told.value.name == library
+        assert f'pip install "dopplerlib[{extra}]"' in str(told.value)
+
+
 def test_the_names_are_listed_in_order_and_without_repetition():
-    assert dir(dopplerlib) == dopplerlib.__all__ == sorted(set(dopplerlib.__all__))
+    assert dopplerlib.__all__ == sorted(set(dopplerlib.__all__))
+    packages = {name.split(".")[1] for name in PACKAGES if "." in name}
+    assert dir(dopplerlib) == sorted({*dopplerlib.__all__, *packages})
 
 
 def test_a_name_that_does_not_exist_is_an_attribute_error():

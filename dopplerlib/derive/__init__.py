@@ -4,3 +4,8 @@ Everything numeric in the library that involves a derivative starts here, as a S
 typed once. ``python -m dopplerlib.derive`` prints it into `dopplerlib.kernels`. This is the only
 package that imports SymPy; no other package imports it.
 """
+
+from .._lazy import attach, require
+
+require("sympy", extra="derive")
+__getattr__, __dir__ = attach(__name__, __path__)

@@ -1,1 +1,5 @@
 """From measurements to a state."""
+
+from .._lazy import attach
+
+__getattr__, __dir__ = attach(__name__, __path__)

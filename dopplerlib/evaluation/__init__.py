@@ -1,1 +1,5 @@
 """Is it right: consistency statistics."""
+
+from .._lazy import attach
+
+__getattr__, __dir__ = attach(__name__, __path__)

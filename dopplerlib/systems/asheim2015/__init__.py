@@ -3,6 +3,7 @@
 Tracking a person using UWB pulse Doppler radar, master's thesis, NTNU Trondheim.
 """
 
+from ..._lazy import attach
 from .expected_error import error_area, one_scan_bound
 from .experiments import baseline_sweep, late_radar, refused_scans, usable_ranges
 from .in_the_plane import central_filter, table_3_2
@@ -79,3 +80,5 @@ __all__ = [
     "usable_ratio",
     "walk",
 ]
+
+__getattr__, __dir__ = attach(__name__, __path__)

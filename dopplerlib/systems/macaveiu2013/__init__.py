@@ -8,6 +8,7 @@ Functions of the same name in several modules are reached through the module: `c
 `two_tones`, `waveforms`.
 """
 
+from ..._lazy import attach
 from . import (
     chain,
     chain_study,
@@ -40,3 +41,5 @@ __all__ = [
     "two_tones",
     "waveforms",
 ]
+
+__getattr__, __dir__ = attach(__name__, __path__)

@@ -4,6 +4,7 @@ Extended Kalman Doppler tracking and model determination for multi-sensor short-
 Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
+from ..._lazy import attach
 from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
 from .chain_bounds import median_error, position_bound, position_bound_iq, record_for
 from .chain_errors import Judged, judged
@@ -132,3 +133,5 @@ __all__ = [
     "walk_filter",
     "write_simulated_iq",
 ]
+
+__getattr__, __dir__ = attach(__name__, __path__)

@@ -3,6 +3,7 @@
 Doppler-only tracking implementation, a report with a notebook on Mittermaier et al. (2016).
 """
 
+from ..._lazy import attach
 from .claims import evidence
 from .local_start import local_start
 from .post_mortem import (
@@ -47,3 +48,5 @@ __all__ = [
     "student_ekf",
     "student_jacobian",
 ]
+
+__getattr__, __dir__ = attach(__name__, __path__)

@@ -3,6 +3,7 @@
 Valarmathi, Emmanuel and Christopher: Doppler information optimization through fusion algorithms.
 """
 
+from ..._lazy import attach
 from .algorithms import ALGORITHMS, AlgorithmRuns, run_algorithms
 from .claims import evidence
 from .doppler_filter import FilteredDoppler, doppler_filter, measurement_variance
@@ -73,3 +74,5 @@ __all__ = [
     "velocity_path",
     "window_table",
 ]
+
+__getattr__, __dir__ = attach(__name__, __path__)
