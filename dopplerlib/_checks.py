@@ -57,15 +57,25 @@ def finite(name, value, shape=None):
     return array
 
 
+def numbers(name, value, shape=None):
+    """Return `value` as a float or a complex array, or raise if it is neither or not of `shape`.
+
+    Values that are not finite may be in it; everything else that `real` refuses is refused here.
+    """
+    array = _numbers(name, value, "iufc", "numbers")
+    array = array.astype(complex if array.dtype.kind == "c" else float, copy=False)
+    check_shape(name, array, shape)
+    return array
+
+
 def finite_complex(name, value, shape=None):
     """Return `value` as a complex array, or raise if it is not finite or not of `shape`.
 
     Real numbers are complex ones; everything else that `real` refuses is refused here as well.
     """
-    array = _numbers(name, value, "iufc", "numbers").astype(complex, copy=False)
-    check_shape(name, array, shape)
+    array = numbers(name, value, shape)
     _check_all(name, "finite", array, np.isfinite(array))
-    return array
+    return array.astype(complex, copy=False)
 
 
 def check_shape(name, array, shape):

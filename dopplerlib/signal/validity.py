@@ -1,0 +1,255 @@
+"""Which samples are measurements: decided on the raw ones, before any mean or filter."""
+
+import numpy as np
+
+from .. import _checks
+
+# A block of so many samples stands still if it moves less than this share of the module's noise.
+_STILL = ((32, 0.01), (128, 0.1))
+_BESIDE = 1e-3  # share for the noise of the other modules, whose gain may differ
+_ALIVE = 0.75  # quantile of a module's blocks that is taken for its noise
+_COARSE = 0.6  # steps: noise of less than that repeats as long as the signal lets it
+_NEIGHBORS = 128  # runs by which it is told how long a run is natural
+_CHANGES = (
+    32  # short runs that are taken for granted, or a record that never moves would be natural
+)
+_LONGEST = 10  # how many runs dead stretches cannot be: where many are long, that is natural
+_ODDS = 0.8  # of the two highest codes, the share of the highest: for a pure tone it is 0.71
+_AT_ONCE = 2**20  # samples
+
+
+def valid_samples(x, *, full_scale=None, longest_run=None, false_alarm=1e-9):
+    """Return which samples are measurements.
+
+    A module that is dead, stuck, cut off or driven into its stops gives samples too, and after a
+    mean is taken off or a filter has run they look like a perfect tone at 0 Hz. So this is to be
+    decided first, and the result goes along with the samples.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., S, n) or (n,)
+        Raw IQ samples of S modules of one array. They may hold NaN and infinities.
+    full_scale : float, optional
+        Amplitude of I and of Q at which the converter is at its stop, its highest code. If None, a
+        branch is clipped at an extreme that repeats far more often than the next value.
+    longest_run : int, optional
+        How many equal samples in a row a live branch may give. If None, it follows from how often
+        the samples of this branch repeat, see the notes.
+    false_alarm : float
+        Chance that a live branch of independent samples loses a run to chance.
+
+    Returns
+    -------
+    ndarray of bool, shape of x
+        False where there is no measurement:
+
+        - a value is not finite;
+        - I or Q stays the same for longer than quantized noise does;
+        - I or Q hardly moves: echo included, less than a hundredth of the power of the module's own
+          noise in 32 samples or a tenth in 128, or a thousandth of that of the other modules;
+        - I or Q is clipped.
+
+    Raises
+    ------
+    ValueError
+        If `x` does not consist of numbers, `full_scale` is not positive, `longest_run` is no
+        positive whole number, or `false_alarm` is not between 0 and 1.
+
+    Notes
+    -----
+    If a sample repeats the one before with probability p, a run of L equal samples begins somewhere
+    in n with a chance of less than ``n p^(L-1)``; the longest that is natural follows. Noise of
+    sigma steps repeats with 0.4 / sigma at most, and p is not less than what the runs around
+    show. A fine converter repeats hardly ever: 8 equal samples of 10 000 are too many. Where noise
+    is less than a step, a slow signal repeats as long as it stays in one; there a run has to be so
+    much longer than the ten longest that their law gives it less than that chance.
+
+    The noise of a module is what its neighboring frequencies or its fourth differences show,
+    whichever is less, in the median of a block: neither an echo that grows nor single loud samples
+    move it. White noise falls below a hundredth of its power in 32 samples of a branch with a
+    chance of 1e-24, below a tenth in 128 with 1e-38. A module that hardly moves for three quarters
+    of its record or more is told by the others only.
+
+    Samples with an imaginary part of zero throughout are those of a module without Q: I decides.
+
+    Examples
+    --------
+    A module that sticks from sample 60 on:
+
+    >>> x = np.random.default_rng(1).standard_normal(100) + 0j
+    >>> x[60:] = x[60]
+    >>> np.flatnonzero(~valid_samples(x)).tolist() == list(range(60, 100))
+    True
+    """
+    x = _checks.numbers("x", x, (None,))
+    if full_scale is not None:
+        full_scale = _checks.positive_number("full_scale", full_scale)
+    if longest_run is not None:
+        longest_run = _checks.whole_number("longest_run", longest_run)
+    false_alarm = _checks.probability("false_alarm", false_alarm)
+    shape = x.shape
+    if not x.size:
+        return np.ones(shape, dtype=bool)
+    x = x.reshape(-1, shape[-2] if x.ndim > 1 else 1, shape[-1])
+    valid = np.empty(x.shape, dtype=bool)
+    step = max(1, _AT_ONCE // (2 * x[0].size))
+    for a in range(0, len(x), step):
+        part = x[a : a + step]
+        parts = [part.real, part.imag] if np.iscomplexobj(part) else [part]
+        rows = np.stack(parts, axis=2)  # (runs, S, branches, n)
+        valid[a : a + step] = _alive(rows, full_scale, longest_run, false_alarm).all(axis=2)
+    return valid.reshape(shape)
+
+
+def _alive(rows, full_scale, longest_run, false_alarm):
+    """Return the same for each branch of the modules, shape of `rows` (runs, S, branches, n)."""
+    good = np.isfinite(rows)
+    rows = np.where(good, rows, 0.0)
+    # Powers of two change no relation, and keep squares away from overflow.
+    exponent = -int(np.frexp(np.abs(rows).max())[1])
+    rows = np.ldexp(rows, exponent)
+    unused = (rows == 0).all(axis=-1)
+    unused[:, :, 0] = False  # without I, or without I and Q, a module is dead
+    if full_scale is not None:
+        stops = np.abs(rows) >= np.ldexp(full_scale, exponent)
+    else:
+        stops = _clipped(rows, good, false_alarm / 4)
+    moves = np.abs(np.diff(rows))
+    step = moves.min(axis=-1, initial=np.inf, where=moves > 0)
+    good &= ~stops
+    own = _own_noise(rows, good)
+    same = moves == 0
+    for place in zip(*np.nonzero(same.sum(axis=-1) > 1), strict=True):
+        change = np.flatnonzero(~same[place]) + 1
+        length = np.diff(change, prepend=0, append=rows.shape[-1])
+        longest = longest_run
+        if longest is None:
+            sigma = np.sqrt(own[place]) / step[place]
+            longest = _longest_natural(length, sigma, false_alarm / rows.shape[-1])
+        good[place] &= ~np.repeat(length > longest, length)
+    beside = np.sort(own, axis=1)[:, own.shape[1] // 2]
+    for block, share in _STILL:
+        limit = np.maximum(share * own, _BESIDE * beside[:, None])
+        # Where a step is larger than that, whatever stays in one would stand still.
+        limit[limit <= step**2] = 0.0
+        first = _firsts(rows.shape[-1], block, block // 2)
+        still = _variance(rows, good, first, block) < limit[..., None]
+        for place in zip(*np.nonzero(still.any(axis=-1)), strict=True):
+            good[place] &= ~_grown(rows[place], first[still[place]], block)
+    good[unused] = True
+    return good
+
+
+def _clipped(rows, good, chance):
+    """Return which samples are at an extreme that repeats too often."""
+    at = np.zeros(rows.shape, dtype=bool)
+    for sign in (1, -1):
+        heights = np.where(good, sign * rows, -np.inf)
+        top = heights.max(axis=-1, keepdims=True)
+        here = good & (heights == top)
+        heights[here] = -np.inf
+        second = heights.max(axis=-1, keepdims=True)
+        a, b = here.sum(axis=-1), (good & (heights == second)).sum(axis=-1)
+        total = np.maximum(a + b, 1)
+        share = a / total
+        rest = np.where(b > 0, 1 - share, 1.0)  # 0 log 0 is 0
+        # Chernoff's bound on so many of these at the top by chance.
+        excess = share * np.log(np.maximum(share, _ODDS) / _ODDS) + np.where(
+            b > 0, rest * np.log(rest / (1 - _ODDS)), 0.0
+        )
+        many = (b > 0) & (share > _ODDS) & (total * excess > -np.log(chance))
+        at |= here & many[..., None]
+    return at
+
+
+def _longest_natural(length, sigma, chance):
+    """Return how long each run (R,) may be, by those around it and noise of `sigma` steps."""
+    count = min(len(length), _NEIGHBORS)
+    blocks = -(-len(length) // _NEIGHBORS)
+    first = np.minimum(np.arange(blocks) * _NEIGHBORS, len(length) - count)
+    around = np.ones((blocks, count + _CHANGES), dtype=int)
+    around[:, :count] = length[first[:, None] + np.arange(count)]
+    # Nine of ten runs end by `usual`: so p^usual is about a tenth.
+    middle = (around.shape[1] - 1) * 9 // 10
+    usual = np.partition(around, middle)[:, middle]
+    p = ((np.sum(around > usual[:, None], axis=1) + 1) / (around.shape[1] + 1)) ** (1 / usual)
+    p = np.maximum(p, np.maximum(np.roll(p, 1), np.roll(p, -1)))
+    some = np.append(length, np.ones(_CHANGES, dtype=int))
+    longest = 1 + np.partition(some, -_LONGEST)[-_LONGEST]  # one more, for chance
+    longest = longest * np.log(chance) / np.log(_LONGEST / len(some))
+    if sigma >= _COARSE:
+        longest = np.minimum(longest, np.log(chance) / np.log(np.maximum(p, 0.4 / sigma)))
+    return np.ceil(np.broadcast_to(longest, p.shape))[np.arange(len(length)) // _NEIGHBORS]
+
+
+def _firsts(n, block, hop):
+    """Return where blocks begin; the last one ends with the record."""
+    if n < block:
+        return np.empty(0, dtype=int)
+    return np.append(np.arange(0, n - block, hop), n - block)
+
+
+def _blocks(rows, good, first, block):
+    """Give blocks about their means, some at a time; NaN where a sample is no measurement."""
+    rows = np.where(good, rows, np.nan)
+    windows = np.lib.stride_tricks.sliding_window_view(rows, block, axis=-1)
+    step = max(1, _AT_ONCE // (block * rows[..., 0].size))
+    for a in range(0, len(first), step):
+        x = windows[..., first[a : a + step], :]
+        x = x - x[..., :1]
+        yield slice(a, a + step), x - x.mean(axis=-1, keepdims=True)
+
+
+def _variance(rows, good, first, block):
+    """Return the variance in each block, (..., blocks)."""
+    variance = np.empty((*rows.shape[:-1], len(first)))
+    if len(first):
+        for part, x in _blocks(rows, good, first, block):
+            variance[..., part] = np.einsum("...i,...i->...", x, x) / (block - 1)
+    return variance
+
+
+def _own_noise(rows, good):
+    """Return the variance of the noise of each branch, (...); 0 if nothing shows it."""
+    block = _STILL[0][0]
+    first = _firsts(rows.shape[-1], block, block)
+    if not len(first):
+        return np.zeros(rows.shape[:-1])
+    noise = np.empty((*rows.shape[:-1], len(first)))
+    taper = np.hanning(block + 2)[1:-1]
+    for part, x in _blocks(rows, good, first, block):
+        # Medians of chi-square of one and of two degrees of freedom, over their means.
+        jerk = _median(np.diff(x, 4) ** 2) / (70 * 0.4549)
+        bins = np.fft.rfft(x * taper)[..., 2:-2]
+        floor = _median(bins.real**2 + bins.imag**2) / (np.log(2) * np.sum(taper**2))
+        noise[..., part] = np.minimum(jerk, floor)
+    known = noise > 0
+    count = known.sum(axis=-1, keepdims=True)
+    place = (_ALIVE * np.maximum(count - 1, 0)).astype(int)
+    ordered = np.sort(np.where(known, noise, np.inf), axis=-1)
+    return np.where(count > 0, np.take_along_axis(ordered, place, axis=-1), 0.0)[..., 0]
+
+
+def _median(values):
+    """Return the middle one of the values, NaN if one is; of an even number the higher one."""
+    middle = values.shape[-1] // 2
+    # NaN is sorted to the end: it would not show in the middle.
+    return np.partition(values, middle)[..., middle] + 0 * values.sum(axis=-1)
+
+
+def _grown(row, first, block):
+    """Return which samples lie in the blocks, or beside them and as near to the same value."""
+    still = np.zeros(len(row), dtype=bool)
+    still[first[:, None] + np.arange(block)] = True
+    edges = np.flatnonzero(np.diff(still, prepend=False, append=False))
+    for a, b in edges.reshape(-1, 2):
+        level = np.median(row[a:b])
+        reach = 7 * np.median(np.abs(row[a:b] - level))  # five standard deviations
+        for side, start, way in (
+            (row[max(a - block, 0) : a][::-1], a - 1, -1),
+            (row[b : b + block], b, 1),
+        ):
+            away = np.abs(side - level) > reach
+            more = int(np.argmax(away)) if away.any() else len(side)
+            still[start + way * np.arange(more)] = True
+    return still
