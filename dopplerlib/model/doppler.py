@@ -77,7 +77,7 @@ def doppler_jacobian(x, array):
 
 
 def check_clear_of_sensors(name, x, array):
-    """Raise if a position in `x`, shape (..., 6), is that of a sensor."""
+    """Raise if a position in `x`, shape (..., 6), is that of a sensor. `x` itself is unchecked."""
     d = x[..., None, :3] - array.positions
     # Not a comparison for equality: the square of less than 1e-162 m is zero as well.
     squared_range = np.einsum("...i,...i->...", d, d)

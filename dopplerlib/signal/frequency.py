@@ -59,7 +59,7 @@ def ml_frequency(x, fs, band=None):
 
 
 def peaks(x, rows, firsts, n, fs, band):
-    """Return frequency and power of the highest peak in each of many windows.
+    """Return frequency and power of the highest peak in each of many windows, unchecked.
 
     Parameters
     ----------

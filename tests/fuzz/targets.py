@@ -1,0 +1,226 @@
+"""Public functions, constructors, methods and properties of the library, and valid calls of them.
+
+Nothing is listed by hand. What is public follows from names; what an argument is follows from its
+entry in the docstring; a valid call is one that the Examples in docstrings make. So a new function
+is tested from its first day, and one that no example calls is found.
+"""
+
+import contextlib
+import copy
+import dataclasses
+import doctest
+import functools
+import inspect
+import pkgutil
+import re
+from dataclasses import dataclass
+from importlib import import_module
+
+import numpy as np
+
+SECTION = re.compile(r"^(\w[\w ]*)\n-+\n", flags=re.MULTILINE)
+ENTRY = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.MULTILINE)
+PACKAGES = ("model", "signal", "estimation", "tracking", "evaluation", "derive")
+# How a docstring says that arguments are checked elsewhere: such a function promises nothing.
+UNCHECKED = re.compile(r"\bunchecked\b|\bnot checked\b", flags=re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Target:
+    """A function to be called, and how: what its arguments are, and valid ones."""
+
+    name: str
+    function: object
+    kinds: dict  # {argument: type as its docstring gives it}
+    doc: str
+    optional: frozenset  # arguments that may be None because that is their default
+
+    @property
+    def record(self):
+        return inspect.isclass(self.function)
+
+    @property
+    def calls(self):
+        """Valid calls, as {argument: value}."""
+        package = f"dopplerlib.{self.name.partition('.')[0]}"
+        return trace(package).get(_key(self.function), [])
+
+    def kind(self, argument):
+        """Return the type of an argument as it is documented, or as it is."""
+        return self.kinds.get(argument) or _kind(self.calls[0].get(argument))
+
+
+def modules(package):
+    """Return the public modules under `package`, imported."""
+    top = import_module(package)
+    names = [package]
+    if hasattr(top, "__path__"):
+        names += [found.name for found in pkgutil.walk_packages(top.__path__, f"{package}.")]
+    return [import_module(name) for name in names if "._" not in name]
+
+
+def public(module):
+    """Yield (name, object) of what a module offers: what stands in it or is in its ``__all__``."""
+    for name, value in vars(module).items():
+        here = getattr(value, "__module__", None) == module.__name__
+        offered = name in vars(module).get("__all__", ()) if not here else True
+        if offered and callable(value) and not name.startswith("_"):
+            yield name, value
+
+
+def sections(value):
+    """Return {title: text} of a numpydoc docstring."""
+    parts = SECTION.split(inspect.getdoc(value) or "")
+    return dict(zip(parts[1::2], parts[2::2], strict=True))
+
+
+def kinds(value):
+    """Return {argument: type} from the docstring; ``F, Q : type`` counts as two."""
+    doc = sections(value)
+    text = doc.get("Parameters", "") + "\n" + doc.get("Attributes", "")
+    return {
+        name.lstrip("*"): kind for names, kind in ENTRY.findall(text) for name in names.split(", ")
+    }
+
+
+def members(cls):
+    """Yield (name, function) of a record's own public methods and properties."""
+    for name, value in vars(cls).items():
+        if name.startswith("_"):
+            continue
+        if isinstance(value, property):
+            yield name, value.fget
+        elif inspect.isfunction(value):
+            yield name, value
+        elif isinstance(value, classmethod):
+            yield name, getattr(cls, name)
+
+
+def discover(package):
+    """Return the targets of a package, in the order of their names."""
+    found = {}
+    for module in modules(package):
+        if UNCHECKED.search(module.__doc__ or ""):
+            continue
+        for name, value in public(module):
+            if UNCHECKED.search(inspect.getdoc(value) or "") or _is_error(value):
+                continue
+            path = f"{module.__name__.partition('.')[2]}.{name}"
+            found[path] = value
+            if inspect.isclass(value):
+                found |= {f"{path}.{member}": f for member, f in members(value)}
+    return [_target(name, function) for name, function in sorted(found.items())]
+
+
+def _is_error(value):
+    return inspect.isclass(value) and issubclass(value, BaseException)
+
+
+def _target(name, function):
+    parameters = inspect.signature(function).parameters
+    optional = frozenset(key for key, each in parameters.items() if each.default is None)
+    return Target(name, function, kinds(function), inspect.getdoc(function) or "", optional)
+
+
+def _kind(value):
+    """Return the type of an argument that its docstring leaves to another function's."""
+    if isinstance(value, str):
+        return "str"
+    if inspect.isfunction(value):
+        return "callable"
+    if isinstance(value, (int, float, complex, np.number)):
+        return "float" if not isinstance(value, int) else "int"
+    if isinstance(value, np.ndarray):
+        return "array_like of complex" if value.dtype.kind == "c" else "array_like"
+    return type(value).__name__
+
+
+def _key(function):
+    return getattr(function, "__qualname__", None), getattr(function, "__module__", None)
+
+
+@functools.cache
+def trace(package, most=3):
+    """Return {(name, module): calls} that the Examples in `package` make, the shortest first.
+
+    The names that the examples import are wrapped while they run. Constructors are wrapped in
+    their class, so that records that a function makes are caught as well.
+    """
+    calls = {}
+    with contextlib.ExitStack() as stack:
+        for module in _all_modules():
+            for name, value in public(module):
+                if inspect.isclass(value):
+                    _wrap_class(value, calls, stack)
+                elif inspect.isfunction(value):
+                    _replace(module, name, _recorder(value, calls), stack)
+        for module in modules(package):
+            for test in doctest.DocTestFinder().find(module):
+                if test.examples:
+                    test.globs = dict(test.globs)
+                    runner = doctest.DocTestRunner(verbose=False)
+                    # The names stay: functions that an example defines need them when called again.
+                    runner.run(test, out=lambda text: None, clear_globs=False)
+    return {key: _smallest(found, most) for key, found in calls.items()}
+
+
+def _all_modules():
+    names = ("model", "signal", "estimation", "tracking", "evaluation", "systems")
+    return [module for name in names for module in modules(f"dopplerlib.{name}")]
+
+
+def _wrap_class(cls, calls, stack):
+    if dataclasses.is_dataclass(cls):
+        _replace(cls, "__init__", _recorder(cls.__init__, calls, key=_key(cls), drop=1), stack)
+    for name, value in list(vars(cls).items()):
+        if name.startswith("_"):
+            continue
+        if isinstance(value, property):
+            _replace(cls, name, property(_recorder(value.fget, calls)), stack)
+        elif inspect.isfunction(value):
+            _replace(cls, name, _recorder(value, calls), stack)
+        elif isinstance(value, classmethod):
+            wrapped = _recorder(value.__func__, calls, drop=1)
+            _replace(cls, name, classmethod(wrapped), stack)
+
+
+def _replace(owner, name, value, stack):
+    stack.callback(setattr, owner, name, vars(owner)[name])
+    setattr(owner, name, value)
+
+
+def _recorder(function, calls, key=None, drop=0):
+    """Wrap a function so that its arguments are kept; `drop` leaves out self or cls."""
+    key = key or _key(function)
+    signature = inspect.signature(function)
+
+    def recording(*args, **kwargs):
+        bound = signature.bind(*args, **kwargs).arguments
+        kept = {name: _kept(value) for name, value in list(bound.items())[drop:]}
+        result = function(*args, **kwargs)
+        calls.setdefault(key, []).append(kept)
+        return result
+
+    recording.__wrapped__ = function
+    recording.__module__, recording.__qualname__ = function.__module__, function.__qualname__
+    recording.__doc__, recording.__name__ = function.__doc__, function.__name__
+    return recording
+
+
+def _kept(value):
+    """Return a copy of an argument as it was when the call was made."""
+    if inspect.isfunction(value):
+        return getattr(value, "__wrapped__", value)
+    return copy.deepcopy(value)
+
+
+def _smallest(found, most):
+    return sorted(found, key=lambda call: sum(map(_size, call.values())))[:most]
+
+
+def _size(value):
+    if dataclasses.is_dataclass(value):
+        return sum(map(_size, vars(value).values()))
+    if isinstance(value, (list, tuple)):
+        return sum(map(_size, value))
+    return np.size(value)
