@@ -8,24 +8,30 @@ BENCH := .venv-bench
 UV := $(shell command -v uv 2>/dev/null || echo .venv-uv/bin/uv)
 
 # A chapter's output must not depend on who executes it: no user profile, no other plotting
-# backend than the notebook's own, no thread count in the order of a floating-point sum.
-export IPYTHONDIR := $(CURDIR)/$(VENV)/ipython
+# backend than the notebook's own, no other library than that of this checkout, no thread count in
+# the order of a floating-point sum. Nor does anything need a home that can be written to.
+HERE := $(CURDIR)/$(VENV)/home
+export IPYTHONDIR := $(HERE)/ipython
+export JUPYTER_CONFIG_DIR := $(HERE)/jupyter
+export JUPYTER_DATA_DIR := $(HERE)/jupyter
+export JUPYTER_RUNTIME_DIR := $(HERE)/jupyter/runtime
+export MPLCONFIGDIR := $(HERE)/matplotlib
+export HYPOTHESIS_STORAGE_DIRECTORY := $(HERE)/hypothesis
+export RUFF_CACHE_DIR := $(HERE)/ruff
+export MYPY_CACHE_DIR := $(HERE)/mypy
+export UV_CACHE_DIR := $(CURDIR)/.venv-uv/cache
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
-unexport MPLBACKEND
+unexport MPLBACKEND JUPYTER_PATH PYTHONHOME PYTHONOPTIMIZE PYTHONPATH PYTHONSAFEPATH
 
-# $(call make-venv,folder,lock): an environment with what the lock holds, and the library itself.
-# Byte code is left to the first import: compiling all of it up front doubles the time, and most of
-# it is never read.
-define make-venv
+# $(call environment,folder,lock): an environment with what the lock holds, and the library itself;
+# made anew if it is not that of this place, this Python and this lock.
+define environment
 @$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	{ echo "error: Python 3.11 or newer is needed, but $(PYTHON) is $$($(PYTHON) -V 2>&1);" \
 	"choose another one with: make PYTHON=python3.12" >&2; exit 1; }
-$(PYTHON) -m venv --clear $(1)
-$(1)/bin/python -m pip install -q --no-compile --no-deps --require-hashes --only-binary :all: -r $(2)
-$(1)/bin/python -m pip install -q --no-deps --no-build-isolation --no-index -e .
-@touch $(1)/.ready
+@$(PYTHON) -m tools.environment $(1) $(2)
 endef
 
 .PHONY: help
@@ -34,7 +40,7 @@ help:  ## show this list
 
 .PHONY: book
 book: $(VENV)/.ready  ## build the book: book/_build/html/index.html
-	$(VENV)/bin/jupyter-book build --quiet --all -W -n --keep-going book
+	$(PY) -m tools.book
 
 .PHONY: test
 test: lint  ## check everything: style, book without warnings, tests, doctests, notebooks
@@ -109,26 +115,32 @@ bench-iq: $(VENV)/.ready  ## time from IQ to Doppler: a second of six sensors
 	$(PY) benchmarks/iq.py
 
 .PHONY: lock
-lock: $(UV)  ## renew environment.lock and benchmarks/requirements.lock
-	$(UV) pip compile $(LOCK_OPTIONS) requirements.in -o environment.lock
-	$(UV) pip compile $(LOCK_OPTIONS) -c environment.lock benchmarks/requirements.in \
-		-o benchmarks/requirements.lock
+lock: $(if $(filter .venv-uv/%,$(UV)),.venv-uv/.ready)  ## renew environment.lock and benchmarks/requirements.lock
+	@mkdir -p .venv-uv
+	$(UV) pip compile $(LOCK_OPTIONS) requirements.in -o .venv-uv/environment.lock
+	$(UV) pip compile $(LOCK_OPTIONS) -c .venv-uv/environment.lock benchmarks/requirements.in \
+		-o .venv-uv/requirements.lock
+	mv -f .venv-uv/environment.lock . && mv -f .venv-uv/requirements.lock benchmarks/
 
 .PHONY: clean
 clean:  ## remove everything that the other targets made
-	rm -rf $(VENV) $(BENCH) .venv-uv book/_build *.egg-info .hypothesis .ruff_cache
-	find dopplerlib book tests tools benchmarks -name __pycache__ -prune -exec rm -rf {} +
+	rm -rf $(VENV) $(BENCH) .venv-uv .venv-matrix book/_build *.egg-info .hypothesis .ruff_cache
+	find dopplerlib book data tests tools benchmarks \
+		\( -name __pycache__ -o -name '*.part' -o -name '.partial-*' \) -prune -exec rm -rf {} +
 
 # One lock for every platform and every Python from 3.11 on, without the address of an index.
 LOCK_OPTIONS := --quiet --upgrade --universal --fork-strategy fewest --python-version 3.11 \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
 
-$(VENV)/.ready: environment.lock pyproject.toml
-	$(call make-venv,$(VENV),environment.lock)
+# Looked at every time: what they were made of is not told by the time of a file.
+.PHONY: FORCE
+$(VENV)/.ready: FORCE
+	$(call environment,$(VENV),environment.lock)
 
-$(BENCH)/.ready: benchmarks/requirements.lock pyproject.toml
-	$(call make-venv,$(BENCH),benchmarks/requirements.lock)
+$(BENCH)/.ready: FORCE
+	$(call environment,$(BENCH),benchmarks/requirements.lock)
 
-.venv-uv/bin/uv:
+.venv-uv/.ready:
 	$(PYTHON) -m venv --clear .venv-uv
 	.venv-uv/bin/python -m pip install -q uv
+	@touch $@

@@ -9,10 +9,12 @@ import numpy as np
 from dopplerlib import RadarArray, ekf, ml_frequency, ml_start
 from dopplerlib.estimation._ekf_loop import LANES
 from dopplerlib.systems import valarmathi
+from tools.command import parser, start
 
 
-def main():
+def main(argv=None):
     """Call each of them once, on as little as it takes."""
+    parser(__doc__).parse_args(argv)
     array = RadarArray.ring(6, 0.2)
     start, box = np.array([1.0, 0, 0, -1, 0, 0]), np.full((2, 6), 1.0) * [[-2], [2]]
     for runs in (1, LANES):
@@ -26,4 +28,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    start(main)

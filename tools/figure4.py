@@ -4,12 +4,12 @@ On two processors the study takes some twenty seconds, the comparison of reading
 file appears when it is complete; an interrupted comparison goes on where it stopped.
 """
 
-import argparse
 import json
 from dataclasses import asdict
 
 import numpy as np
 
+from dopplerlib._files import write_text
 from dopplerlib._progress import progress_bar
 from dopplerlib.systems.mittermaier2016 import (
     figure4,
@@ -19,7 +19,8 @@ from dopplerlib.systems.mittermaier2016 import (
     sweep_readings,
 )
 from dopplerlib.systems.mittermaier2016.published import data_file
-from tools.files import write
+from tools.command import parser, start
+from tools.study import started
 
 SEED = 4
 AGAIN = 11  # of the repetition of the best reading with either likelihood
@@ -35,16 +36,20 @@ def study(path):
         for series in range(result.position.shape[1]):
             values = (getattr(result, name)[level, series] for name in names)
             lines.append([f"{variance:.6g}", series + 1, *(f"{value:.6g}" for value in values)])
-    write(path, "".join(",".join(map(str, line)) + "\n" for line in lines))
+    write_text(path, "".join(",".join(map(str, line)) + "\n" for line in lines))
 
 
 def readings(path):
     """Write the score of every reading, with what is needed to make it again."""
-    part = path.with_suffix(".part")
-    rows = json.loads(part.read_text(encoding="utf-8")) if part.exists() else []
-    for reading in progress_bar(sweep_readings()[len(rows) :], "readings"):
-        rows.append(score(reading, SEED))
-        write(part, json.dumps(rows))
+    settings = {"seed": SEED, "draws": DRAWS, "levels": scored_levels()}
+    with started(path, sweep_readings(), **settings) as study:
+        for reading in progress_bar(study.left, "readings"):
+            study.keep(score(reading, SEED))
+        write_text(path, text_of(study.rows))
+
+
+def text_of(rows):
+    """Return the text of the file of scores; the best reading of either likelihood is repeated."""
     best = [
         max(range(len(rows)), key=lambda i: (rows[i]["likelihood"] == name, rows[i]["score"]))
         for name in ("moving", "static")
@@ -55,8 +60,7 @@ def readings(path):
     for name, table in {"again": again, "readings": rows}.items():
         lines = ",\n".join("    " + json.dumps(row) for row in table)
         parts.append(f'  "{name}": [\n{lines}\n  ]')
-    write(path, "{\n" + ",\n".join(parts) + "\n}\n")
-    part.unlink()
+    return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
 def score(reading, seed):
@@ -69,15 +73,15 @@ def score(reading, seed):
     return asdict(reading) | dict(zip(("score", "low", "high"), rounded, strict=True))
 
 
-def main():
+def main(argv=None):
     """Do what the command line asks for."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=["study", "readings"])
-    if parser.parse_args().what == "study":
+    options = parser(__doc__)
+    options.add_argument("what", choices=["study", "readings"])
+    if options.parse_args(argv).what == "study":
         study(data_file("ourfigure4.csv"))
     else:
         readings(data_file("ourfigure4_readings.json"))
 
 
 if __name__ == "__main__":
-    main()
+    start(main)

@@ -4,13 +4,14 @@ It takes some minutes on one processor. The file appears when it is complete; an
 goes on at the level where it stopped.
 """
 
-import argparse
 import json
 from pathlib import Path
 
+from dopplerlib._files import write_text
 from dopplerlib._progress import progress_bar
 from dopplerlib.systems.mittermaier2016 import race
-from tools.files import write
+from tools.command import parser, start
+from tools.study import started
 
 PATH = Path(__file__).resolve().parent.parent / "data" / "mittermaier2016" / "iq_race.json"
 COLUMNS = ("outliers", "ratio", "low", "high")
@@ -40,17 +41,14 @@ def text_of(levels):
     return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
-def main():
+def main(argv=None):
     """Write the file."""
-    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
-    part = PATH.with_suffix(".part")
-    done = json.loads(part.read_text(encoding="utf8")) if part.exists() else []
-    for snr_db in progress_bar(race.RACE_LEVELS[len(done) :], "levels"):
-        done.append(level(snr_db))
-        write(part, json.dumps(done))
-    write(PATH, text_of(done))
-    part.unlink()
+    parser(__doc__).parse_args(argv)
+    with started(PATH, race.RACE_LEVELS) as study:
+        for snr_db in progress_bar(study.left, "levels"):
+            study.keep(level(snr_db))
+        write_text(PATH, text_of(study.rows))
 
 
 if __name__ == "__main__":
-    main()
+    start(main)

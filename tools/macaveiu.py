@@ -1,19 +1,20 @@
 """Make data/macaveiu2013/ourchain.csv and ourdetections.csv: the scheme of Fig 6 on many records.
 
 Every record is processed in every way, so that ways are compared on the same noise. The study
-takes several minutes; interrupted, it goes on where it stopped. Progress goes to standard error.
-The files do not depend on the number of processors.
+takes several minutes; interrupted, it goes on where it stopped. The files do not depend on the
+number of processors.
 """
 
-import json
 import math
 import multiprocessing
 from dataclasses import astuple, fields
 
+from dopplerlib._files import replacing
 from dopplerlib._progress import progress_bar
 from dopplerlib.systems.macaveiu2013 import chain_study, paths
 from dopplerlib.systems.macaveiu2013.published import data_file
-from tools.files import write
+from tools.command import parser, quiet_worker, start
+from tools.study import started
 
 TOGETHER = 5  # runs between two saves
 
@@ -37,25 +38,28 @@ def lines(job):
 
 def study(folder, figures, runs):
     """Write both files to a folder."""
-    part = folder / "ourchain.part"
-    done = json.loads(part.read_text(encoding="utf-8")) if part.exists() else []
     jobs = [(figure, first) for first in range(0, runs, TOGETHER) for figure in figures]
-    with multiprocessing.Pool() as pool:
-        results = pool.imap(lines, jobs[len(done) :])
-        for _ in progress_bar(jobs[len(done) :], "records"):
-            done.append(next(results))
-            write(part, json.dumps(done))
+    files = folder / "ourchain.csv", folder / "ourdetections.csv"
+    with started(files[0], jobs, together=TOGETHER) as study:
+        with multiprocessing.Pool(initializer=quiet_worker) as pool:
+            results = pool.imap(lines, study.left)
+            for _ in progress_bar(study.left, "records"):
+                study.keep(next(results))
+        with replacing(*files) as unfinished:
+            for path, text in zip(unfinished, texts(jobs, study.rows), strict=True):
+                path.write_text(text, encoding="utf-8", newline="\n")
+
+
+def texts(jobs, done):
+    """Return the texts of both files, sorted by path and record."""
     done = [lines_of_job for _, lines_of_job in sorted(zip(jobs, done, strict=True))]
     heads = (
         ["figure", "variant", "run", *(field.name for field in fields(chain_study.Outcome))],
         ["figure", "run", *(field.name for field in fields(chain_study.Counts))],
     )
-    for name, head, parts in zip(
-        ("ourchain.csv", "ourdetections.csv"), heads, zip(*done, strict=True), strict=True
-    ):
-        rows = [line for part_of_it in parts for line in part_of_it]
-        write(folder / name, "\n".join([",".join(head), *rows]) + "\n")
-    part.unlink()
+    for head, parts in zip(heads, zip(*done, strict=True), strict=True):
+        rows = [line for part in parts for line in part]
+        yield "\n".join([",".join(head), *rows]) + "\n"
 
 
 def text(value):
@@ -65,5 +69,11 @@ def text(value):
     return "NaN" if math.isnan(value) else f"{value:.4f}"
 
 
-if __name__ == "__main__":
+def main(argv=None):
+    """Write both files where they belong."""
+    parser(__doc__).parse_args(argv)
     study(data_file(), tuple(paths()), chain_study.RUNS)
+
+
+if __name__ == "__main__":
+    start(main)

@@ -5,7 +5,6 @@ with fixed settings and alone on one thread, and whatever else a run leaves behi
 the name of the machine's kernel) is removed.
 """
 
-import argparse
 import json
 import os
 import sys
@@ -17,7 +16,8 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
-from tools.files import write
+from dopplerlib._files import write_text
+from tools.command import parser, start
 
 ROOT = Path(__file__).resolve().parent.parent
 FIXED = {
@@ -128,33 +128,41 @@ def _without_images(outputs):
     ]
 
 
-def main(argv=None):
-    """Return the number of notebooks that failed or, with --check, differ."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="compare only, write nothing")
-    parser.add_argument("--timeout", type=int, default=300, help="seconds a cell may take")
-    parser.add_argument("notebooks", nargs="*", type=Path, help="default: all of the book")
-    options = parser.parse_args(argv)
-    bad = 0
-    for path in options.notebooks or chapters():
-        print(f"{path.name} ...", end=" ", file=sys.stderr, flush=True)
-        start = time.perf_counter()
+def executed(paths, timeout):
+    """Yield every path with the text that executing it gives, None if it fails, and the seconds."""
+    for number, path in enumerate(paths, start=1):
+        print(f"{number} of {len(paths)}: {path.name} ...", end=" ", file=sys.stderr, flush=True)
+        start, new = time.perf_counter(), None
         try:
-            new = execute(path, options.timeout)
+            new = execute(path, timeout)
         except (CellExecutionError, ChapterError, TimeoutError) as error:
-            bad += 1
             print(f"failed\n{error}", file=sys.stderr)
-            continue
-        print(f"{time.perf_counter() - start:.1f} s", file=sys.stderr)
-        if options.check:
+        seconds = time.perf_counter() - start
+        if new is not None:
+            print(f"{seconds:.1f} s", file=sys.stderr)
+        yield path, new, seconds
+
+
+def main(argv=None):
+    """Return whether notebooks failed or, with --check, differ."""
+    options = parser(__doc__)
+    options.add_argument("--check", action="store_true", help="compare only, write nothing")
+    options.add_argument("--timeout", type=int, default=300, help="seconds a cell may take")
+    options.add_argument("notebooks", nargs="*", type=Path, help="default: all of the book")
+    chosen = options.parse_args(argv)
+    bad = False
+    for path, new, _ in executed(chosen.notebooks or chapters(), chosen.timeout):
+        if new is None:
+            bad = True
+        elif chosen.check:
             found = differences(path.read_text(encoding="utf8"), new)
-            bad += bool(found)
+            bad = bad or bool(found)
             for line in found:
                 print(f"{path}: {line}")
         else:
-            write(path, new)
-    return bad
+            write_text(path, new)
+    return int(bad)
 
 
 if __name__ == "__main__":
-    sys.exit(bool(main()))
+    start(main)

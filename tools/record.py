@@ -2,25 +2,24 @@
 
 Hashes, versions, seeds, run times and the verdicts under other seeds go to book/reproducibility.md,
 which nobody edits by hand. Nothing is written unless every chapter comes out as it is stored and
-every verdict is the one on record. Without running anything, --hashes brings the hashes up to date,
-for whoever has just changed one chapter.
+every verdict is the one on record; an interrupted run starts over. Without running anything,
+--hashes brings the hashes up to date, for whoever has just changed one chapter.
 """
 
-import argparse
 import hashlib
 import json
 import os
 import platform
 import re
 import sys
-import time
 from importlib.metadata import version
 from pathlib import Path
 
+from dopplerlib._files import write_text
 from dopplerlib.evaluation.claims import VERDICTS
 from tools import seeds as judged
-from tools.files import write
-from tools.notebooks import ROOT, chapters, differences, execute
+from tools.command import parser, start
+from tools.notebooks import ROOT, chapters, differences, executed
 
 PAGE = ROOT / "book" / "reproducibility.md"
 SEED = re.compile(r"default_rng\(([\d_]+)\)")
@@ -109,12 +108,9 @@ turn, with the hash of every file."""
 def run_times():
     """Execute the chapters; return the section on their run times, or None if one differs."""
     rows, bad = [], 0
-    for path in chapters():
-        print(f"{path.name} ...", end=" ", file=sys.stderr, flush=True)
-        start = time.perf_counter()
-        found = differences(path.read_text(encoding="utf8"), execute(path, timeout=300))
-        seconds = time.perf_counter() - start
-        print(f"{seconds:.1f} s", *found, sep="\n  ", file=sys.stderr)
+    for path, new, seconds in executed(chapters(), timeout=300):
+        found = ["failed"] if new is None else differences(path.read_text(encoding="utf8"), new)
+        print(*found, sep="\n", end="\n" * bool(found), file=sys.stderr)
         rows.append((f"`{path.name}`", f"{seconds:.0f}"))
         bad += bool(found)
     text = f"""Of the whole chapter, with the kernels compiled before. They say what to expect, no
@@ -126,12 +122,7 @@ more: on other machines, and on a busy one, they differ.
 
 def seeds_tried():
     """Judge all claims with other seeds; return the section, or None if a verdict differs."""
-    found = {}
-    for document in judged.documents():
-        found[document] = {}
-        for seed in SEEDS_TRIED:
-            print(f"claims of {document}, seed {seed} ...", file=sys.stderr, flush=True)
-            found[document][seed] = judged.verdicts(document, seed)
+    found = judged.verdicts_by_seed(judged.documents(), SEEDS_TRIED)
     different = judged.differences(found, {name: judged.on_record(name) for name in found})
     print(*different, sep="\n", file=sys.stderr)
     rows = [
@@ -201,17 +192,20 @@ def recorded(text):
 
 def main(argv=None):
     """Write the page; return 1 if a result kept it from being written."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--hashes", action="store_true", help="run nothing, keep what was measured")
-    if parser.parse_args(argv).hashes:
+    options = parser(__doc__)
+    options.add_argument(
+        "--hashes", action="store_true", help="run nothing, keep what was measured"
+    )
+    if options.parse_args(argv).hashes:
         measured = recorded(PAGE.read_text(encoding="utf8"))
     else:
+        print("all chapters, then all claims; interrupted, it starts over", file=sys.stderr)
         measured = {RAN: where_it_ran(), TIMES: run_times(), SEEDS: seeds_tried()}
     if None in measured.values():
         return 1
-    write(PAGE, page(measured))
+    write_text(PAGE, page(measured))
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    start(main)

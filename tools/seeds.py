@@ -5,7 +5,6 @@ verdict is not the one on record. Progress goes to standard error. The exit code
 1 if there is one.
 """
 
-import argparse
 import sys
 from collections import Counter
 from importlib import import_module
@@ -15,6 +14,7 @@ import numpy as np
 
 from dopplerlib.evaluation.claims import VERDICTS, read_claims
 from dopplerlib.evaluation.verdicts import judge_all
+from tools.command import parser, start
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -40,6 +40,18 @@ def on_record(document):
     """Return the verdicts that the file of claims tells."""
     claims = read_claims(ROOT / "data" / document / "claims.toml")
     return {claim.id: claim.verdict for claim in claims}
+
+
+def verdicts_by_seed(names, seeds):
+    """Return the verdicts by document, seed and claim; tell what is under way."""
+    found, done = {name: {} for name in names}, 0
+    for name in names:
+        for seed in seeds:
+            done += 1
+            of_all = f"{done} of {len(names) * len(seeds)}"
+            print(f"{of_all}: claims of {name}, seed {seed} ...", file=sys.stderr, flush=True)
+            found[name][seed] = verdicts(name, seed)
+    return found
 
 
 def table(found):
@@ -69,18 +81,13 @@ def differences(found, record):
     return lines
 
 
-def main(arguments=None):
+def main(argv=None):
     """Judge, print, and return the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("documents", nargs="*", help="all that have claims if none is named")
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
-    chosen = parser.parse_args(arguments)
-    found = {}
-    for document in chosen.documents or documents():
-        found[document] = {}
-        for seed in chosen.seeds:
-            print(f"{document}, seed {seed} ...", file=sys.stderr, flush=True)
-            found[document][seed] = verdicts(document, seed)
+    options = parser(__doc__)
+    options.add_argument("documents", nargs="*", help="all that have claims if none is named")
+    options.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
+    chosen = options.parse_args(argv)
+    found = verdicts_by_seed(chosen.documents or documents(), chosen.seeds)
     print(*table(found), sep="\n")
     differ = differences(found, {document: on_record(document) for document in found})
     print(*(differ or ["every verdict is the one on record"]), sep="\n")
@@ -88,4 +95,4 @@ def main(arguments=None):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    start(main)

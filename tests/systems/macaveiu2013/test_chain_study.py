@@ -45,18 +45,31 @@ def test_the_study_covers_every_path_and_every_variant():
 
 def test_the_tool_goes_on_where_it_stopped(tmp_path, monkeypatch):
     """A job is done once: what is in the part is not computed again."""
-    monkeypatch.setattr(tool, "lines", lambda job: ([f"{job[0]},a,{job[1]}"], [f"{job[0]}"]))
+    jobs = []
+
+    def lines(job):
+        jobs.append(job)
+        if len(jobs) == 2:
+            raise KeyboardInterrupt
+        return [f"{job[0]},a,{job[1]}"], [f"{job[0]}"]
+
+    monkeypatch.setattr(tool, "lines", lines)
     monkeypatch.setattr(tool.multiprocessing, "Pool", _OneProcess)
-    (tmp_path / "ourchain.part").write_text('[[["from the part"], ["7"]]]', encoding="utf-8")
+    with pytest.raises(KeyboardInterrupt):
+        tool.study(tmp_path, (7, 9), 2 * tool.TOGETHER)
     tool.study(tmp_path, (7, 9), 2 * tool.TOGETHER)
+    assert jobs == [(7, 0), (9, 0), (9, 0), (7, tool.TOGETHER), (9, tool.TOGETHER)]
     lines = (tmp_path / "ourchain.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("figure,variant,run,held,")
     # Sorted by figure, whatever the order in which they were made.
-    assert lines[1:] == ["from the part", f"7,a,{tool.TOGETHER}", "9,a,0", f"9,a,{tool.TOGETHER}"]
-    assert not (tmp_path / "ourchain.part").exists()
+    assert lines[1:] == [f"{i},a,{first}" for i in (7, 9) for first in (0, tool.TOGETHER)]
+    assert {path.name for path in tmp_path.iterdir()} == {"ourchain.csv", "ourdetections.csv"}
 
 
 class _OneProcess:
+    def __init__(self, initializer):
+        pass
+
     def __enter__(self):
         return self
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 from sphinx.errors import ExtensionError
 
-SOURCE = Path(__file__).resolve().parents[1] / "book" / "_ext" / "offline.py"
+SOURCE = Path(__file__).resolve().parents[2] / "book" / "_ext" / "offline.py"
 spec = importlib.util.spec_from_file_location("offline", SOURCE)
 offline = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(offline)

@@ -42,7 +42,7 @@ def test_the_exit_code_tells_whether_verdicts_differ(monkeypatch, capsys):
     assert seeds.main(["paper"]) == 1
     out = capsys.readouterr()
     assert "seed 3: a is atypical" in out.out
-    assert "paper, seed 3" in out.err
+    assert "3 of 3: claims of paper, seed 3" in out.err
 
 
 def test_every_document_with_evidence_is_found(tmp_path):

@@ -1,0 +1,110 @@
+"""Make an environment: what a lock holds, and the library itself; or find that it is there.
+
+An environment knows its place: a copied or moved checkout would go on with the library of another
+one, and an unpacked or pulled lock would not be looked at. So `.ready` in its folder holds what it
+was made of and where, and is compared every time. Only what comes with Python is used here.
+"""
+
+import hashlib
+import json
+import os
+import shutil
+import sys
+import tomllib
+from pathlib import Path
+
+from tools.alone import alone
+from tools.command import child, parser, start
+
+ROOT = Path(__file__).resolve().parent.parent
+READY = ".ready"
+INSTALL = ["-m", "pip", "install", "--quiet", "--no-deps"]
+MADE_OF = ("build-system", "project", "tool.setuptools")  # of pyproject.toml: not how it is tested
+
+
+def digest(content):
+    """Return the first digits of the SHA-256 of some bytes."""
+    return hashlib.sha256(content).hexdigest()[:12]  # read by people, in a message
+
+
+def wanted(lock, root=ROOT):
+    """Return what an environment made now would be, by the words in which a difference is told."""
+    settings = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
+    tables = settings | {f"tool.{name}": table for name, table in settings["tool"].items()}
+    made_of = json.dumps([tables.get(name) for name in MADE_OF], sort_keys=True)
+    return {
+        "checkout": str(root),
+        "Python": sys.version,
+        "Python's folder": os.path.realpath(sys.base_prefix),
+        "lock": f"{lock.name} {digest(lock.read_bytes())}",
+        "pyproject.toml": digest(made_of.encode()),
+    }
+
+
+def reasons(folder, want):
+    """Return why an environment cannot be used: nothing if it can."""
+    try:
+        have = json.loads((folder / READY).read_text(encoding="utf-8"))
+    except (FileNotFoundError, ValueError):
+        return ["it is not there, or not complete"]
+    if not os.access(folder / "bin" / "python", os.X_OK):
+        return ["its Python is gone"]
+    if not isinstance(have, dict):
+        have = {}
+    return [
+        f"{name} was {have.get(name)}, is {value}"
+        for name, value in want.items()
+        if have.get(name) != value
+    ]
+
+
+def make(folder, lock, want, file):
+    """Make the environment anew; `file` is the lock, which outlives us with the child at work."""
+    (folder / READY).unlink(missing_ok=True)
+    for path in folder.iterdir():
+        if path.name != ".lock":
+            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+    python = [folder / "bin" / "python"]
+    # Byte code is left to the first import: compiling all of it up front doubles the time, and
+    # most of it is never read.
+    exact = ["--no-compile", "--require-hashes", "--only-binary", ":all:", "-r", lock]
+    steps = {
+        "an empty environment": [sys.executable, "-m", "venv", folder],
+        f"what {lock.name} holds, a minute or so": [*python, *INSTALL, *exact],
+        "the library": [*python, *INSTALL, "--no-build-isolation", "--no-index", "-e", ROOT],
+    }
+    temporary = folder / "tmp"  # what a killed pip leaves goes with the folder
+    temporary.mkdir()
+    for number, (name, command) in enumerate(steps.items(), start=1):
+        print(f"{folder.name}: {number} of {len(steps)}, {name}", file=sys.stderr, flush=True)
+        env = os.environ | {"TMPDIR": str(temporary)}
+        with child(command, env=env, pass_fds=[file]) as step:
+            if step.wait():
+                return step.returncode
+    unfinished = folder / f"{READY}.tmp"
+    unfinished.write_text(json.dumps(want, indent=1) + "\n", encoding="utf-8")
+    unfinished.replace(folder / READY)
+    return 0
+
+
+def main(argv=None):
+    """Make the environment if it is not the one wanted; return the exit code."""
+    options = parser(__doc__)
+    options.add_argument("folder", type=Path)
+    options.add_argument("lock", type=Path)
+    chosen = options.parse_args(argv)
+    folder, lock = ROOT / chosen.folder, ROOT / chosen.lock
+    want = wanted(lock)
+    if not reasons(folder, want):
+        return 0
+    with alone(folder / ".lock", folder.name) as file:
+        found = reasons(folder, want)  # again: whoever had the lock has made it
+        if not found:
+            return 0
+        for reason in found:
+            print(f"{folder.name} is made anew: {reason}", file=sys.stderr)
+        return make(folder, lock, want, file)
+
+
+if __name__ == "__main__":
+    start(main)
