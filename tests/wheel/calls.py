@@ -1,0 +1,187 @@
+"""Import all of a dopplerlib that was installed somewhere, and call something of every part of it.
+
+Run as ``python -I -S calls.py ROOT LIBRARIES [OPTION ...]``: isolated, so that no checkout is seen.
+ROOT is the folder or the zip file with the library, LIBRARIES the folder of what it depends on.
+
+core     What extras bring counts as not installed.
+strict   NumPy raises where it would warn, and a process that is started afresh filters, too.
+quick    The filter, which takes seconds to compile, is left out.
+"""
+
+import json
+import multiprocessing
+import pkgutil
+import sys
+from importlib import import_module
+
+EXTRAS = {"matplotlib": "figures", "sympy": "derive"}
+COMPILED = ("estimation, compiled", "figures.figure6")
+
+
+def part_calls(dl, np):
+    """Return {what: function without arguments}: one at least for each package but the figures."""
+    s, rng = dl.systems, np.random.default_rng(1)
+    ring, x0, one = dl.RadarArray.ring(6, 0.2), [1.0, 0, 0, -1, 0, 0], np.eye(1)
+    nodes = np.arange(3.0)
+    return {
+        "model": lambda: dl.doppler_shift(x0, ring),
+        "signal": lambda: dl.crlb_frequency_std(10.0, 64, 1000.0),
+        "signal, recordings": lambda: s.mittermaier2016.read_simulated_iq()[2],
+        "kernels": lambda: dl.kernels.doppler.doppler_shift(*x0, 0.0, 0.2, 0.0, 2.0),
+        "estimation": lambda: dl.kf_update([0.0], one, [1.0], one, one)[0],
+        "estimation, compiled": lambda: filtered(dl, np),
+        "tracking": lambda: dl.gnn_assign([[1.0, 2.0], [3.0, 0.5]], 4.0)[0],
+        "evaluation": lambda: dl.chi2_interval(6),
+        "evaluation, claims": lambda: judged(dl, rng),
+        "asheim2015": lambda: s.asheim2015.deviations([1.0, 2.0]),
+        "macaveiu2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
+        "mittermaier2016": lambda: s.mittermaier2016.published_figure6().nis,
+        "mittermaier2016, scenario": lambda: s.mittermaier2016.scenario().truth,
+        "sombatsatien": lambda: s.sombatsatien.reported_record(),
+        "valarmathi": lambda: s.valarmathi.saved_study().snrs_db,
+        "valarmathi, compiled": lambda: s.valarmathi._pair_kernel.choose(
+            0.1, 2.0, nodes, nodes, np.ones((3, 3)), nodes
+        ),
+    }
+
+
+def filtered(dl, np):
+    """Return where the compiled filter ends on a record of two samples."""
+    dl, np = (import_module(one) if isinstance(one, str) else one for one in (dl, np))
+    ring, x0 = dl.RadarArray.ring(3, 0.2), [1.0, 0, 0, -1, 0, 0]
+    return dl.ekf(np.full((2, 3), 90.0), ring, x0, np.eye(6), 0.001, 0.4, 0.4).x[-1]
+
+
+def filtered_afresh(dl, np):
+    """Return the same from a new process, which finds the library by the path of this one."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        return pool.apply(filtered, (dl.__name__, np.__name__))
+
+
+def judged(dl, rng):
+    """Return for each claim on the stand-in whether its verdict is that on record."""
+    asheim = dl.systems.asheim2015
+    claims = dl.evaluation.claims.read_claims(asheim.published.data_file("stand_in_claims.toml"))
+    found = asheim.claims.stand_in_evidence(rng=rng, runs=40)
+    judgments = dl.evaluation.verdicts.judge_all(claims, found)
+    return [judgment.verdict == judgment.claim.verdict for judgment in judgments]
+
+
+def figure_calls(dl, np):
+    """Return {module of the figures: function without arguments that draws one}."""
+    f, s, rng = dl.figures, dl.systems, np.random.default_rng(1)
+    time, plane, column = np.arange(5.0), np.ones((5, 2)), np.ones((5, 1))
+    line, ring = dl.RadarArray.linear(2, 0.2), dl.RadarArray.ring(6, 0.2)
+    x0, sensors = [1.0, 0, 0, -1, 0, 0], np.array([[-0.5, 0.0], [0.5, 0.0]])
+    paper, half = s.mittermaier2016, dl.evaluation.intervals.Estimate(0.5, 0.4, 0.6)
+    world, path = paper.scenario(), paper.scenario().truth
+    two, scan = np.ones((2, 2)), {"title": "", "S": np.eye(2), "detections": plane}
+    errors = rng.uniform(0.1, 1.0, (2, 20))
+    return {
+        "asheim_beyond": lambda: f.asheim_beyond.sweep(time[:2], {"a": [half] * 2}, "s"),
+        "asheim_gate": lambda: f.asheim_gate.gates([scan] * 2, (0.9, 0.6), 9.0),
+        "asheim_position": lambda: f.asheim_position.error_over_distance(time, {"a": plane.T}),
+        "asheim_radar": lambda: f.asheim_radar.with_without(time, {"radar": {"a": plane.T}}),
+        "asheim_scene": lambda: f.asheim_scene.system_path(),
+        "asheim_stand_in": lambda: f.asheim_stand_in.positions(plane, plane, plane, sensors),
+        "automotive": lambda: f.automotive.scene({"all": {}}, np.zeros((6, 4))),
+        "automotive_beyond": lambda: f.automotive_beyond.hole(time, {"a": time}, 0.1, {"a": time}),
+        "automotive_filter": lambda: f.automotive_filter.lags(time[:2], two, two, {}),
+        "automotive_waveforms": lambda: f.automotive_waveforms.sketches(),
+        "consistency": lambda: f.consistency.one_run(time, {"a": time, "b": time}, (1.0, 3.0)),
+        "demonstration": lambda: f.demonstration.doppler_demonstration("", line, x0),
+        "derivation": lambda: f.derivation.one_text(["a", "b"], ["c"]),
+        "end_to_end": lambda: f.end_to_end.when(0.005, 0.03),
+        "error_map": lambda: f.error_map.shares(time[1:], {"a": {"b": errors[0, :4]}}),
+        "figure6": lambda: f.figure6.errors(
+            paper.figure6(1, rng=rng, keep=()), paper.published_figure6()
+        ),
+        "filtering": lambda: f.filtering.bands(time, plane, plane, plane),
+        "geometry": lambda: f.geometry.two_sensors(line, x0),
+        "iq": lambda: f.iq.chain(["a", "b"], ["c", "d"], 1),
+        "iq_study": lambda: f.iq_study.outliers({"a": time, "b": time}, 2.0),
+        "noise_sweep": lambda: f.noise_sweep.sequences({"a": errors[None]}),
+        "observability": lambda: f.observability.blind_family(
+            ring, np.array(x0), np.array([x0, x0])
+        ),
+        "preface": lambda: f.preface.hero(
+            world, dl.doppler_shift(path, world.array), path[None] + 0.01, x0
+        ),
+        "scene": lambda: f.scene.project(np.eye(3), 30.0, 20.0),
+        "sombatsatien": lambda: f.sombatsatien.alarm_shares((1, 2), {"a": {"b": plane[:2] > 0}}),
+        "start": lambda: f.start.error_distributions({"a": tuple(errors)}, {}, (0.5, 0.6)),
+        "style": lambda: f.style.STYLE.read_text(encoding="utf-8"),
+        "tour": lambda: f.tour.record(time, column, column),
+        "valarmathi": lambda: f.valarmathi.correlation(time, time),
+    }
+
+
+class Blocked:
+    """Finder of modules for which those that extras bring are not installed."""
+
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        """Refuse what belongs to an extra."""
+        if name.split(".")[0] in EXTRAS:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+
+def imported(dl):
+    """Import every module; return their names, and the errors of packages that lack an extra."""
+    names, errors = [], []
+    # A package that cannot be imported is not walked into; its error is that of the loop.
+    for module in pkgutil.walk_packages(dl.__path__, f"{dl.__name__}.", lambda name: None):
+        if module.name.endswith("__main__"):
+            continue
+        try:
+            import_module(module.name)
+            names.append(module.name)
+        except ModuleNotFoundError as error:
+            errors.append(f"{module.name}: {error}")
+    return names, errors
+
+
+def check(result, np):
+    """Raise unless a call gave finite numbers, a text, or a figure with something in it."""
+    if hasattr(result, "axes"):
+        result = len(result.axes) or np.nan
+    if not result if isinstance(result, str) else not np.isfinite(np.array(result, float)).all():
+        raise ValueError(f"got {result!r}")
+
+
+def main(root, libraries, *options):
+    """Do what the command line asks for, and print what was done."""
+    sys.path[:0] = [root]
+    sys.path.append(libraries)
+    if "core" in options:
+        sys.meta_path.insert(0, Blocked)
+    import dopplerlib as dl
+
+    if not dl.__file__.startswith(root):
+        raise SystemExit(f"the library comes from {dl.__file__}")
+    packages = [hasattr(dl, name) for name in ("signal", "systems", "tracking")]
+    import numpy as np
+
+    if "strict" in options:
+        np.seterr(all="raise")
+    names, errors = imported(dl)
+    calls = part_calls(dl, np)
+    if "core" not in options:
+        calls |= {f"figures.{name}": call for name, call in figure_calls(dl, np).items()}
+    if "quick" in options:
+        calls = {what: call for what, call in calls.items() if what not in COMPILED}
+    if "strict" in options:
+        calls["spawn"] = lambda: filtered_afresh(dl, np)
+    for what, call in calls.items():
+        try:
+            check(call(), np)
+        except Exception as error:
+            errors.append(f"{what}: {type(error).__name__}: {error}")
+    loop = dl.systems.valarmathi._pair_kernel.choose
+    hits = sum(loop.stats.cache_hits.values()) if hasattr(loop, "stats") else 0
+    print(json.dumps({"imports": names, "calls": [*calls], "errors": errors, "found": hits,
+                      "packages": packages}))  # fmt: skip
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,207 @@
+"""The library outside its checkout: what is in sdist and wheel, and where an installation runs."""
+
+import compileall
+import fnmatch
+import json
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import dopplerlib
+from tests.wheel.calls import EXTRAS, figure_calls, part_calls
+
+ROOT = Path(__file__).resolve().parents[2]
+# What a build adds: an unpacked sdist has it, too.
+GENERATED = {"PKG-INFO", "setup.cfg"}
+LEFTOVERS = (
+    "book/_build/html/index.html",
+    "data/valarmathi/.partial-study.csv",
+    "dopplerlib/figures/__pycache__/style.cpython-311.pyc",
+    "tests/.ruff_cache/CACHEDIR.TAG",
+)
+SDIST = "import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])"
+NOWHERE = {"HOME": "/dev/null", "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def ignored(path):
+    """Return whether .gitignore leaves out a path, given relative to the root of the project."""
+    patterns = (ROOT / ".gitignore").read_text(encoding="utf-8").split()
+    return any(
+        path.as_posix().startswith(pattern)
+        if "/" in pattern.rstrip("/")
+        else any(fnmatch.fnmatch(part, pattern.rstrip("/")) for part in path.parts)
+        for pattern in patterns
+    )
+
+
+def project_files():
+    """Return the files of the project, and which of them are tracked: all, where there is no git.
+
+    In a checkout a new file is of the project before it is tracked.
+    """
+    tracked, new = (listed(*options) for options in ((), ("--others", "--exclude-standard")))
+    if tracked is not None:
+        return tracked | new, tracked
+    files = set()
+    for folder, folders, names in os.walk(ROOT):
+        here = Path(folder).relative_to(ROOT)
+        folders[:] = [name for name in folders if name != ".git" and not ignored(here / name)]
+        files |= {(here / name).as_posix() for name in names if not ignored(here / name)}
+    return (files - {".git"} - GENERATED,) * 2
+
+
+def listed(*options):
+    """Return the files that git lists, or None where it cannot."""
+    if shutil.which("git") is None:
+        return None
+    git = ["git", "-C", str(ROOT), "ls-files", "-z", *options]
+    done = subprocess.run(git, capture_output=True, check=False)
+    names = set(done.stdout.decode().split("\0")) - {""}
+    return None if done.returncode else {name for name in names if (ROOT / name).is_file()}
+
+
+@pytest.fixture(scope="module")
+def sdist(tmp_path_factory):
+    """Return the sdist, made from a copy of the project with leftovers of all kinds in it."""
+    folder = tmp_path_factory.mktemp("sdist")
+    for name in (*project_files()[0], *LEFTOVERS):
+        target = folder / "project" / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(b"" if name in LEFTOVERS else (ROOT / name).read_bytes())
+    run([sys.executable, "-c", SDIST, str(folder)], cwd=folder / "project")
+    (made,) = folder.glob("*.tar.gz")
+    return made
+
+
+@pytest.fixture(scope="module")
+def wheel(sdist):
+    """Return the wheel that the sdist builds, without a network."""
+    pip("wheel", "--no-build-isolation", "--wheel-dir", sdist.parent, sdist)
+    (made,) = sdist.parent.glob("*.whl")
+    return made
+
+
+@pytest.fixture(scope="module")
+def installed(wheel):
+    """Return the folder in which the wheel is installed."""
+    folder = wheel.parent / "installed"
+    pip("install", "--no-compile", "--target", folder, wheel)
+    return folder
+
+
+@pytest.fixture
+def copy(installed, tmp_path):
+    """Return a copy of the installed library, in a folder of its own."""
+    folder = tmp_path / "copy"
+    shutil.copytree(
+        installed / "dopplerlib",
+        folder / "dopplerlib",
+        ignore=shutil.ignore_patterns("__pycache__"),
+    )
+    return folder
+
+
+def pip(command, *arguments):
+    options = ["-q", "--no-deps", "--no-index", "--no-cache-dir", "--disable-pip-version-check"]
+    run([sys.executable, "-m", "pip", command, *options, *map(str, arguments)], cwd=ROOT.parent)
+
+
+def run(command, **settings):
+    done = subprocess.run(command, capture_output=True, text=True, check=False, **settings)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def used(root, *options, flags=(), **environment):
+    """Import and call all that is at `root`, from an empty folder; return what was told of it."""
+    empty = Path(environment.setdefault("MPLCONFIGDIR", str(root.parent / "matplotlib")))
+    empty.mkdir(exist_ok=True)
+    told = ("NUMBA", "XDG", "PYTHON")
+    inherited = {key: value for key, value in os.environ.items() if not key.startswith(told)}
+    command = [sys.executable, *flags, "-I", "-S", str(ROOT / "tests" / "wheel" / "calls.py")]
+    libraries = sysconfig.get_path("purelib")
+    told = run([*command, str(root), libraries, *options], cwd=empty, env=inherited | environment)
+    told = json.loads(told.splitlines()[-1])
+    assert told["packages"] == [True] * 3
+    return told
+
+
+def test_every_part_of_the_library_is_called():
+    packages = {path.parent.name for path in (ROOT / "dopplerlib").rglob("__init__.py")}
+    assert (
+        packages - {"dopplerlib", "derive", "figures", "systems"}
+        <= part_calls(dopplerlib, np).keys()
+    )
+    figures = {path.stem for path in (ROOT / "dopplerlib" / "figures").glob("*.py")}
+    assert figures - {"__init__"} == figure_calls(dopplerlib, np).keys()
+
+
+@pytest.mark.skipif(listed() is None, reason="git is not here, or has no project here")
+def test_the_files_of_the_project_are_known_without_git(monkeypatch):
+    files, _ = project_files()
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    assert project_files() == (files, files)
+
+
+def test_the_sdist_holds_what_is_tracked_and_no_leftovers(sdist):
+    with tarfile.open(sdist) as archive:
+        files = [member.name for member in archive.getmembers() if member.isfile()]
+    held = {name.partition("/")[2] for name in files if ".egg-info/" not in name} - GENERATED
+    files, tracked = project_files()
+    assert tracked - held == set()
+    assert held - files == set()
+
+
+def test_the_wheel_holds_the_library_and_its_data(wheel):
+    library = {name for name in project_files()[0] if name.startswith("dopplerlib/")}
+    data = {f"dopplerlib/{name}" for name in project_files()[0] if name.startswith("data/")}
+    with zipfile.ZipFile(wheel) as archive:
+        names = {name for name in archive.namelist() if ".dist-info/" not in name}
+    assert names == library | data
+    assert {f"dopplerlib/{name}" for name in ("py.typed", "figures/style.mplstyle")} <= names
+    assert wheel.stat().st_size < 1.2e6
+
+
+def test_everything_works_where_it_is_installed(installed):
+    told = used(installed)
+    assert told["errors"] == []
+    modules = {
+        path.relative_to(installed).with_suffix("").as_posix().replace("/", ".")
+        for path in (installed / "dopplerlib").rglob("*.py")
+        if path.stem not in ("__init__", "__main__")
+    }
+    assert modules <= set(told["imports"])
+
+
+def test_nothing_minds_warnings_as_errors_and_no_docstrings_and_a_strict_numpy(installed):
+    told = used(installed, "strict", flags=("-W", "error", "-OO"))
+    assert told["errors"] == [] and "spawn" in told["calls"]
+
+
+def test_without_extras_all_else_works_and_they_are_named_with_their_command(installed):
+    told = used(installed, "core", NUMBA_DISABLE_JIT="1")
+    assert len(told["errors"]) == len(EXTRAS)
+    for name, extra in EXTRAS.items():
+        (error,) = (error for error in told["errors"] if f"{name} is needed here" in error)
+        assert f'pip install "dopplerlib[{extra}]"' in error
+
+
+def test_it_runs_where_nothing_can_be_written(copy):
+    for folder in [copy / "dopplerlib", *(p for p in copy.rglob("*") if p.is_dir())]:
+        (folder / "__pycache__").write_bytes(b"")  # so that no folder can be made, by root neither
+    assert used(copy, "quick", **NOWHERE)["errors"] == []
+
+
+def test_it_runs_without_its_sources(copy):
+    assert compileall.compile_dir(copy, quiet=1, legacy=True)
+    for path in copy.rglob("*.py"):
+        path.unlink()
+    assert used(copy, "quick", **NOWHERE)["errors"] == []
