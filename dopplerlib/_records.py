@@ -1,6 +1,6 @@
 """Records: frozen dataclasses whose values compare, hash, copy, pickle and stay as they are."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import TypeVar, dataclass_transform
 
 import numpy as np
@@ -10,7 +10,7 @@ _NUMBERS = "biufc"  # kinds of arrays that are compared by value
 _SAMPLE = 64  # values of an array that its hash looks at
 
 
-@dataclass_transform(frozen_default=True)
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
 def record(cls: type[_T]) -> type[_T]:
     """Make a frozen dataclass of `cls` that is equal to another one if all fields are.
 
