@@ -3,7 +3,8 @@
 import numpy as np
 
 from .. import _checks
-from .whiteness import innovation_whiteness
+from ._innovations import chi2_tail, of_track, whiten
+from .whiteness import ljung_box
 
 
 def innovation_alarms(track, looks, probability=0.001, lags=5):
@@ -14,23 +15,24 @@ def innovation_alarms(track, looks, probability=0.001, lags=5):
     Parameters
     ----------
     track : Track
-        With `innovation` and `S`; leading axis ``runs``.
-    looks : sequence of int
+        With `innovation`, in which NaN is a missing measurement, and `S`.
+    looks : iterable of int
         Numbers of samples after which each test is taken, each time on all samples so far.
     probability : float
         Of a false alarm at any of the looks, at most, for each test.
     lags : int
-        Of the test of whiteness, which is not taken after fewer than ten samples per lag.
+        Of the test of whiteness, which leaves out components with fewer than ten values per lag.
 
     Returns
     -------
-    dict of str to ndarray of bool, shape (runs, looks)
+    dict of str to ndarray of bool, shape (..., looks)
         By the name of the test, whether it rejects at each look.
 
     Raises
     ------
     ValueError
-        If a look is not a number of samples in the record, or another argument is refused.
+        If a look is not a number of samples in the record, the track has no innovations or S, a
+        record has no measurement at all, or another argument is refused.
 
     Notes
     -----
@@ -42,28 +44,24 @@ def innovation_alarms(track, looks, probability=0.001, lags=5):
 
     Bar-Shalom, Li and Kirubarajan (2001), Section 5.4.
     """
-    from scipy.stats import chi2  # here: it takes longer to load than all the rest
-
-    innovation = _checks.finite("track.innovation", track.innovation, (None, None))
-    samples, m = innovation.shape[-2:]
-    looks = [_checks.whole_number("looks", look) for look in looks]
+    innovation, S, there = of_track(track)
+    samples = innovation.shape[-2]
+    looks = _looks(looks)
     if max(looks) > samples:
         raise ValueError(f"looks must be at most the {samples} samples, got {max(looks)}")
     threshold = _checks.probability("probability", probability) / len(looks)
-    innovation, S = innovation[:, : max(looks)], track.S[:, : max(looks)]
-    white = np.linalg.solve(np.linalg.cholesky(S), innovation[..., None])[..., 0]
+    least = 10 * _checks.whole_number("lags", lags)
+    white = whiten(innovation, S)
     p = {name: [] for name in ("NIS average", "innovation mean", "whiteness")}
-    for n in looks:
-        total = np.sum(white[:, :n] ** 2, axis=(-2, -1))
-        p["NIS average"].append(chi2.sf(total, n * m))
-        mean = white[:, :n].mean(axis=-2)
-        p["innovation mean"].append(chi2.sf(n * np.sum(mean**2, axis=-1), m))
-        enough = n >= 10 * lags
-        p["whiteness"].append(
-            innovation_whiteness(innovation[:, :n], S[:, :n], lags).p_value
-            if enough
-            else np.ones(len(white))
-        )
+    for look in looks:
+        part, known = white[..., :look, :], there[..., :look, :]
+        n = known.sum(axis=-2)  # of each component
+        total, of_means = n.sum(axis=-1), np.sum(n > 0, axis=-1)
+        square = np.sum(part.sum(axis=-2) ** 2 / np.maximum(n, 1), axis=-1)
+        p["NIS average"].append(chi2_tail(np.sum(part**2, axis=(-2, -1)), total))
+        p["innovation mean"].append(chi2_tail(square, of_means))
+        p["whiteness"].append(ljung_box(part, known, lags, least).p_value)
+    # Where there is no value yet, there is no p-value either, and no alarm.
     return {name: np.stack(values, axis=-1) < threshold for name, values in p.items()}
 
 
@@ -72,15 +70,30 @@ def first_alarm(alarms, looks):
 
     Parameters
     ----------
-    alarms : array_like of bool, shape (runs, looks)
+    alarms : array_like of bool, shape (..., looks)
         Of one test, see `innovation_alarms`.
-    looks : sequence of int
+    looks : iterable of int
         Numbers of samples, ascending.
 
     Returns
     -------
-    ndarray, shape (runs,)
+    ndarray, shape (...)
         Infinite where there is none.
+
+    Raises
+    ------
+    ValueError
+        If `alarms` are not booleans, one for each of `looks`, or these do not ascend.
     """
-    alarms = np.asarray(alarms, bool)
-    return np.where(alarms.any(axis=-1), np.asarray(looks, float)[alarms.argmax(axis=-1)], np.inf)
+    looks = _looks(looks)
+    if looks != sorted(set(looks)):
+        raise ValueError(f"looks must ascend, got {looks}")
+    alarms = _checks.booleans("alarms", alarms, (len(looks),))
+    return np.where(alarms.any(axis=-1), np.array(looks, float)[alarms.argmax(axis=-1)], np.inf)
+
+
+def _looks(looks):
+    looks = [_checks.whole_number("looks", look) for look in _checks.iterable("looks", looks)]
+    if not looks:
+        raise ValueError("looks must hold a number of samples, got none")
+    return looks

@@ -109,18 +109,21 @@ def nees_samples(P, F, Q):
     ----------
     P : array_like, shape (K, n, n)
         Covariances after the updates, such as those of a `Track`.
-    F, Q : array_like, shape (n, n)
-        Transition matrix and covariance of the process noise.
+    F, Q : array_like, shape (n, n) or (K, n, n)
+        Transition matrix and covariance of the process noise; of each sample from the one before
+        to it, if times are uneven.
 
     Returns
     -------
     float
-        Between 1 and K: variance of one value, 2 n, divided by that of the average.
+        Between 1 and K: variance of one value, 2 n, divided by that of the average. Components
+        that are known, with a variance of zero at all times, do not count.
 
     Raises
     ------
     ValueError
-        If the shapes do not fit, or a matrix is not finite or no covariance.
+        If the shapes do not fit, a matrix is not finite or no covariance, or `P` is singular in
+        another way than by components that are known.
 
     Notes
     -----
@@ -139,17 +142,25 @@ def nees_samples(P, F, Q):
     >>> round(nees_samples(P, [[1]], [[0]]), 1)
     2.0
     """
-    P = _checks.finite("P", P, (None, None))
-    n = P.shape[-1]
-    P = _checks.covariance("P", P, n)
-    if P.ndim != 3:
+    P = _checks.finite("P", P, (None, None, None))
+    if P.ndim != 3 or not P.size:
         raise ValueError(f"P must have shape (K, n, n), got {P.shape}")
-    F = _checks.matrix("F", F, (n, n))
-    Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
+    samples, n = P.shape[:2]
+    unknown = np.diagonal(P, axis1=-2, axis2=-1).any(axis=0)
+    F = _checks.each_sample("F", _checks.finite("F", F, (n, n)), samples, (n, n))
+    Q = _checks.covariance("Q", Q, n, definite=False)
+    Q = _checks.each_sample("Q", Q, samples, (n, n))
+    if not unknown.all():
+        _checks.covariance("P", P, n, definite=False)
+        if not unknown.any():
+            raise ValueError("P must have a variance above zero, got a state that is known")
+        block = np.ix_(range(samples), unknown, unknown)
+        P, F, Q, n = P[block], F[block], Q[block], int(unknown.sum())
+    P = _checks.covariance("P", P, n)
     L = np.linalg.cholesky(P)
-    predicted = F @ P[:-1] @ F.T + Q
+    predicted = F[1:] @ P[:-1] @ F[1:].mT + Q[1:]
     # C of neighbors: L_k^-1 P_k = L_k', so that only the prediction has to be solved for.
-    step = L[1:].swapaxes(-1, -2) @ np.linalg.solve(predicted, F @ L[:-1])
+    step = L[1:].mT @ np.linalg.solve(predicted, F[1:] @ L[:-1])
     C, total = step, 0.0
     for lag in range(1, len(P)):
         total += np.sum(C**2)

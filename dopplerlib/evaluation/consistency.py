@@ -3,6 +3,9 @@
 import numpy as np
 
 from .. import _checks
+from ..estimation import gaussian
+from ..estimation.track import Track
+from ._innovations import measured, whiten
 
 
 def nees(track, truth):
@@ -18,17 +21,20 @@ def nees(track, truth):
     Returns
     -------
     ndarray, shape (..., K)
-        Chi-square distributed with n degrees of freedom if the filter is consistent.
+        Chi-square distributed with n degrees of freedom if the filter is consistent; where `P` is
+        singular, with as many as its rank.
 
     Raises
     ------
     ValueError
-        If the shapes do not fit, `truth` is not finite, the track was made without `P`, or a `P`
-        is singular or gives a negative value, which no covariance does.
+        If the shapes do not fit, a value is not finite, the track was made without `P`, a `P` is no
+        covariance, or it is singular and the state errs where it has no spread.
 
     Notes
     -----
-    Mittermaier et al. (2016), Eq 12.
+    Mittermaier et al. (2016), Eq 12. A component that is known, such as the height of a target in
+    a plane, has the variance zero, and takes no part if its error is zero as well: the inverse of P
+    is then that of the others, in general the pseudo-inverse after scaling to a diagonal of ones.
 
     Examples
     --------
@@ -40,18 +46,27 @@ def nees(track, truth):
     >>> nees(track, truth=np.zeros((2, 2))).tolist()
     [0.0, 25.0]
     """
+    x, P = estimates(track)
+    truth = _checks.finite("truth", truth, x.shape[-2:])
+    _checks.check_broadcast("truth", truth.shape[:-2], "track.x", x.shape[:-2])
+    error = truth - x
+    try:
+        np.linalg.cholesky(P)
+    except np.linalg.LinAlgError:
+        return _form_of_singular(error, P, np.maximum(np.abs(truth), np.abs(x)))
+    return np.sum(whiten(error, P) ** 2, axis=-1)
+
+
+def estimates(track):
+    """Return states and covariances of a track, or raise if it has none that can be judged."""
+    _checks.instance("track", track, Track)
     if track.P is None:
         raise ValueError('track must hold P, got None: ask ekf for it with keep=("P",)')
-    truth = _checks.finite("truth", truth, track.x.shape[-2:])
-    _checks.check_broadcast("truth", truth.shape[:-2], "track.x", track.x.shape[:-2])
-    # Definiteness is not checked beforehand: it would take longer than all the rest.
-    try:
-        values = _quadratic_form(truth - track.x, track.P)
-    except np.linalg.LinAlgError:
-        raise ValueError("track.P must be positive definite, got a singular matrix") from None
-    if (values < 0).any():
-        raise ValueError(f"track.P must be positive definite, got a NEES of {values.min():.3g}")
-    return values
+    x = _checks.finite("track.x", track.x, (None, None))
+    P = _checks.covariance("track.P", track.P, x.shape[-1], definite=False)
+    _checks.check_shape("track.P", P, (*x.shape[-2:], x.shape[-1]))
+    _checks.check_broadcast("track.P", P.shape[:-3], "track.x", x.shape[:-2])
+    return x, P
 
 
 def nis(innovation, S):
@@ -60,35 +75,34 @@ def nis(innovation, S):
     Parameters
     ----------
     innovation : array_like, shape (..., m)
-        Measurement minus predicted measurement.
+        Measurement minus predicted measurement; NaN where it is missing.
     S : array_like, shape (..., m, m)
         Its covariance.
 
     Returns
     -------
     ndarray, shape (...)
-        Chi-square distributed with m degrees of freedom if the filter is consistent.
+        Chi-square distributed if the filter is consistent, with as many degrees of freedom as there
+        are components that are not NaN; NaN where all are.
 
     Raises
     ------
     ValueError
-        If the shapes do not fit, a value is not finite, or `S` is not a covariance (symmetric and
-        positive definite).
+        If the shapes do not fit, an innovation is infinite, or `S` is not a covariance (symmetric
+        and positive definite) of the components that are there.
 
     Notes
     -----
-    Mittermaier et al. (2016), Eq 14.
+    Mittermaier et al. (2016), Eq 14. The components that are there are Gaussian with their own part
+    of `S`, whatever the others would have been.
 
     Examples
     --------
     >>> float(nis([3.0, 4.0], np.eye(2)))
     25.0
     """
-    innovation = _checks.finite("innovation", innovation, (None,))
-    m = innovation.shape[-1]
-    S = _checks.covariance("S", S, m)
-    _checks.check_broadcast("innovation", innovation.shape[:-1], "S", S.shape[:-2])
-    return _quadratic_form(innovation, S)
+    innovation, S, there = measured(innovation, S)
+    return np.where(there.any(axis=-1), gaussian.quadratic_form(innovation, S), np.nan)[()]
 
 
 def chi2_interval(dof, runs=1, confidence=0.95):
@@ -131,5 +145,22 @@ def chi2_interval(dof, runs=1, confidence=0.95):
     return float(chi2.ppf(tail, dof * runs) / runs), float(chi2.isf(tail, dof * runs) / runs)
 
 
-def _quadratic_form(error, covariance):
-    return np.sum(error * np.linalg.solve(covariance, error[..., None])[..., 0], axis=-1)
+def _form_of_singular(error, P, size):
+    """Return the quadratic form with the pseudo-inverse, or raise if an error has no variance."""
+    deviation = np.sqrt(np.diagonal(P, axis1=-2, axis2=-1))
+    known = deviation == 0
+    scale = np.where(known, 1.0, deviation)
+    value, vector = np.linalg.eigh(P / (scale[..., :, None] * scale[..., None, :]))
+    along = (vector.mT @ np.where(known, 0.0, error / scale)[..., None])[..., 0]
+    null = value <= P.shape[-1] ** 2 * np.finfo(float).eps  # as in `gaussian.solve`
+    # A direction whose variance is rounding is known to a millionth of a deviation, and no state
+    # better than to 1e-9 of its size.
+    rounding = 1e-9 * size
+    wrong = np.where(known, np.abs(error), 0.0) > rounding
+    limit = 1e-6 + np.linalg.norm(np.where(known, 0.0, rounding / scale), axis=-1, keepdims=True)
+    if wrong.any() or (null & (np.abs(along) > limit)).any():
+        raise ValueError(
+            "track.P must be positive definite, or the estimate right where it has no spread, got "
+            f"a singular matrix and errors of up to {np.abs(error).max():.3g}"
+        )
+    return np.sum(np.where(null, 0.0, along**2 / np.where(null, 1.0, value)), axis=-1)

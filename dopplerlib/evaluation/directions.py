@@ -19,7 +19,8 @@ def errors_by_direction(error, P):
     -------
     ndarray, shape (..., n)
         From the widest axis to the narrowest; standard normal if the filter is consistent. The sum
-        of their squares is NEES.
+        of their squares is NEES. Along an axis without any spread it is 0 if the error is, and
+        infinite otherwise.
 
     Raises
     ------
@@ -39,11 +40,15 @@ def errors_by_direction(error, P):
     [0.05, 4.0]
     """
     error = _checks.finite("error", error, (None,))
-    P = _checks.covariance("P", P, error.shape[-1])
+    P = _checks.covariance("P", P, error.shape[-1], definite=False)
     _checks.check_broadcast("error", error.shape[:-1], "P", P.shape[:-2])
     variance, axis = np.linalg.eigh(P)
     # The sign of an axis is arbitrary: its largest component is made positive.
     largest = np.abs(axis).argmax(axis=-2, keepdims=True)
     axis = axis * np.sign(np.take_along_axis(axis, largest, axis=-2))
     along = (np.swapaxes(axis, -1, -2) @ error[..., None])[..., 0]
-    return (along / np.sqrt(variance))[..., ::-1]
+    # An axis without spread: what rounding leaves of the largest variance, and of the error.
+    none = variance <= error.shape[-1] ** 2 * np.finfo(float).eps * variance[..., -1:]
+    right = np.abs(along) <= 1e-9 * np.linalg.norm(error, axis=-1, keepdims=True)
+    sure = np.where(right, 0.0, np.copysign(np.inf, along))
+    return np.where(none, sure, along / np.sqrt(np.where(none, 1.0, variance)))[..., ::-1]

@@ -1,11 +1,12 @@
 """Which records a test of consistency refuses: its false alarms, and its power against faults."""
 
 import numpy as np
-from scipy.stats import norm
+from scipy.stats import chi2, norm
 
 from .. import _checks
-from .averages import average_interval, nees_samples
-from .consistency import chi2_interval
+from ._innovations import of_track
+from .averages import nees_samples
+from .consistency import nees
 from .whiteness import innovation_mean, innovation_whiteness
 
 TESTS = (
@@ -24,11 +25,11 @@ def rejections(track, truth, F, Q, *, confidence=0.95, lags=20, group=20):
     Parameters
     ----------
     track : Track
-        Estimates x of shape (runs, K, n), innovation, nis; P and S with the leading axis 1, for
-        they are the same in every run.
-    truth : array_like, shape (runs, K, n)
+        Estimates x of shape (..., K, n), P, innovation (NaN where a measurement is missing), S and
+        nis. P and S may have a leading axis 1 if they are the same in every run.
+    truth : array_like, shape (..., K, n)
         True states.
-    F, Q : array_like, shape (n, n)
+    F, Q : array_like, shape (n, n) or (K, n, n)
         Transition matrix and process noise of the filter, for the memory of NEES.
     confidence : float
         Probability that a right filter passes.
@@ -40,14 +41,15 @@ def rejections(track, truth, F, Q, *, confidence=0.95, lags=20, group=20):
     Returns
     -------
     dict of str to ndarray of bool
-        For each name in `TESTS`, whether a record is refused, shape (runs,); for the last one
-        whether a group is, shape (runs // group,). The first three need no truth.
+        For each name in `TESTS`, whether a record is refused, shape (...); for the last one
+        whether a group of runs is, shape (runs // group,). The first three need no truth.
 
     Raises
     ------
     ValueError
-        If an argument is refused by `innovation_mean` or `innovation_whiteness`, or P is not the
-        same in every run.
+        If an argument is refused by `nees`, `nees_samples`, `innovation_mean` or
+        `innovation_whiteness`, the track lacks something, a record has no measurement or too few
+        for the lags, or `nis` is NaN where there is one.
 
     Notes
     -----
@@ -57,27 +59,32 @@ def rejections(track, truth, F, Q, *, confidence=0.95, lags=20, group=20):
     """
     alarm = 1 - _checks.probability("confidence", confidence)
     group = _checks.whole_number("group", group)
-    if track.P is None or track.P.shape[0] != 1:
-        raise ValueError("track.P must have the leading axis 1")
-    runs, samples, m = track.innovation.shape
-    n = track.x.shape[-1]
+    _, _, there = of_track(track)
+    nis = _checks.measured("track.nis", track.nis, there.shape[:-1])
+    if not np.array_equal(np.isnan(nis), ~there.any(axis=-1)):
+        raise ValueError("track.nis must be NaN where no measurement is there, and only there")
+    squared = nees(track, truth)
+    P = np.reshape(track.P, (-1, *track.P.shape[-3:]))
+    known = (np.diagonal(P, axis1=-2, axis2=-1) == 0).all(axis=(0, 1))
+    n = P.shape[-1] - int(known.sum())
     mean, deviation = innovation_mean(track.innovation, track.S)
-    white = innovation_whiteness(track.innovation, track.S, lags)
-    # One factor for all runs at a time; `nees` would factor again for each.
-    error = np.moveaxis(truth - track.x, 0, -1)
-    squared = np.sum(np.linalg.solve(np.linalg.cholesky(track.P[0]), error) ** 2, axis=1).T
-    groups = squared[: runs // group * group, -1].reshape(-1, group).mean(axis=1)
-    worth = nees_samples(track.P[0], F, Q)
+    p_value = innovation_whiteness(track.innovation, track.S, lags).p_value
+    if np.isnan(p_value).any():
+        raise ValueError(f"lags must be fewer than the values of a component, got {lags}")
+    groups = squared[..., -1].ravel()
+    groups = groups[: len(groups) // group * group].reshape(-1, group).sum(axis=1)
+    worth = np.array([nees_samples(one, F, Q) for one in P]).reshape(track.P.shape[:-3])
 
-    def outside(values, interval):
-        return (values < interval[0]) | (values > interval[1])
+    def outside(total, dof):
+        return (total < chi2.ppf(alarm / 2, dof)) | (total > chi2.isf(alarm / 2, dof))
 
+    limit = norm.isf(alarm / 2 / (there.any(axis=-2).sum(axis=-1, keepdims=True)))
     results = (
-        outside(track.nis.mean(axis=-1), chi2_interval(m, samples, confidence)),
-        (np.abs(mean / deviation) > norm.isf(alarm / 2 / m)).any(axis=-1),
-        white.p_value < alarm,
-        outside(squared[:, -1], chi2_interval(n, 1, confidence)),
-        outside(squared.mean(axis=-1), average_interval(n, worth, confidence)),
-        outside(groups, chi2_interval(n, group, confidence)),
+        outside(np.nansum(nis, axis=-1), there.sum(axis=(-2, -1))),
+        (np.abs(mean / deviation) > limit).any(axis=-1),
+        p_value < alarm,
+        outside(squared[..., -1], n),
+        outside(squared.mean(axis=-1) * worth, n * worth),
+        outside(groups, n * group),
     )
     return dict(zip(TESTS, results, strict=True))

@@ -4,6 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
+from ._innovations import chi2_tail, measured, whiten
 
 
 @record
@@ -13,18 +14,20 @@ class Whiteness:
     Attributes
     ----------
     autocorrelation : ndarray, shape (..., lags, m)
-        At lags 1, 2, ...; of each component after division by its standard deviation.
+        At lags 1, 2, ...; of each component after division by its standard deviation. NaN where no
+        two values are that far apart.
     statistic : ndarray, shape (...)
         Ljung-Box statistic, summed over the components.
-    dof : int
-        Its degrees of freedom if the innovations are white: lags times m.
+    dof : int, or ndarray of int, shape (...)
+        Its degrees of freedom if the innovations are white: lags times m, less those without a
+        pair of values.
     p_value : ndarray, shape (...)
-        Probability of a larger statistic if the innovations are white.
+        Probability of a larger statistic if the innovations are white; NaN if no pair is there.
     """
 
     autocorrelation: np.ndarray
     statistic: np.ndarray
-    dof: int
+    dof: int | np.ndarray
     p_value: np.ndarray
 
 
@@ -34,22 +37,22 @@ def innovation_mean(innovation, S):
     Parameters
     ----------
     innovation : array_like, shape (..., K, m)
-        Innovations of a record.
+        Innovations of a record; NaN where a measurement is missing.
     S : array_like, shape (..., K, m, m)
         Their covariances.
 
     Returns
     -------
     mean : ndarray, shape (..., m)
-        Time average.
+        Average over the samples that are there; NaN for a component of which none is.
     standard_error : ndarray, shape (..., m)
         Standard deviation of `mean` for independent innovations of covariance `S`.
 
     Raises
     ------
     ValueError
-        If the shapes do not fit, a value is not finite, or `S` is not a covariance (symmetric and
-        positive definite).
+        If the shapes do not fit, an innovation is infinite, or `S` is not a covariance (symmetric
+        and positive definite) of the components that are there.
 
     Notes
     -----
@@ -63,10 +66,14 @@ def innovation_mean(innovation, S):
     >>> round(float(mean[0]), 3), round(float(standard_error[0]), 3)
     (0.2, 0.1)
     """
-    innovation, S = _record(innovation, S)
-    variance = np.diagonal(S, axis1=-2, axis2=-1)
-    samples = innovation.shape[-2]
-    return innovation.mean(axis=-2), np.sqrt(variance.sum(axis=-2)) / samples
+    innovation, S, there = measured(innovation, S, record=True)
+    variance = np.where(there, np.diagonal(S, axis1=-2, axis2=-1), 0.0)
+    samples = there.sum(axis=-2)
+    known = samples > 0
+    samples = np.maximum(samples, 1)
+    mean = innovation.sum(axis=-2) / samples
+    error = np.sqrt(variance.sum(axis=-2)) / samples
+    return np.where(known, mean, np.nan), np.where(known, error, np.nan)
 
 
 def innovation_whiteness(innovation, S, lags=20):
@@ -75,7 +82,7 @@ def innovation_whiteness(innovation, S, lags=20):
     Parameters
     ----------
     innovation : array_like, shape (..., K, m)
-        Innovations of a record.
+        Innovations of a record; NaN where a measurement is missing.
     S : array_like, shape (..., K, m, m)
         Their covariances, which take out the correlation between components.
     lags : int
@@ -88,12 +95,17 @@ def innovation_whiteness(innovation, S, lags=20):
     Raises
     ------
     ValueError
-        If the shapes do not fit, a value is not finite, `S` is not a covariance, there are too few
-        samples, or an innovation never changes.
+        If the shapes do not fit, an innovation is infinite, `S` is not a covariance, there are too
+        few samples, or an innovation never changes.
 
     Notes
     -----
-    Ljung and Box (1978). The components are decorrelated by the Cholesky factor of `S`.
+    Ljung and Box (1978). The components are decorrelated by the Cholesky factor of `S`, and those
+    that are there by that of their own part of it. With r_l the sum of the products of values l
+    samples apart over the sum of squares, the statistic is the sum of n (n + 2) r_l^2 / n_l: for n
+    independent Gaussian values of which n_l pairs are there, r_l^2 has the mean n_l / (n (n + 2)),
+    whatever is missing (Stoffer and Toloi 1992). Without gaps n_l is n - l. A component with no
+    more values than lags is left out.
 
     Examples
     --------
@@ -104,44 +116,55 @@ def innovation_whiteness(innovation, S, lags=20):
     >>> result.autocorrelation.round(2).tolist(), bool(result.p_value < 1e-6)
     ([[-0.99]], True)
     """
-    from scipy.stats import chi2  # here: it takes longer to load than all the rest
-
-    innovation, S = _record(innovation, S)
-    samples, m = innovation.shape[-2:]
+    innovation, S, there = measured(innovation, S, record=True)
+    samples = innovation.shape[-2]
     lags = _checks.whole_number("lags", lags)
     if lags >= samples:
         raise ValueError(f"lags must be less than the number of samples {samples}, got {lags}")
-    white = _whiten(innovation, np.linalg.cholesky(S))
-    if (np.ptp(white, axis=-2) == 0).any():
+    return ljung_box(whiten(innovation, S), there, lags)
+
+
+def ljung_box(white, there, lags, least=None):
+    """Return the test of `innovation_whiteness` for values of variance 1; nothing is checked.
+
+    Parameters
+    ----------
+    white : ndarray, shape (..., K, m)
+        Zero where a value is missing.
+    there : ndarray of bool, shape (..., K, m)
+        Which values are not missing.
+    lags : int
+        Number of lags.
+    least : int
+        Components with fewer values than that are left out; more than `lags` if None.
+    """
+    samples = white.shape[-2]
+    n = there.sum(axis=-2)
+    used = n >= (lags + 1 if least is None else least)
+    highest = np.where(there, white, -np.inf).max(axis=-2)
+    if (used & (highest == np.where(there, white, np.inf).min(axis=-2))).any():
         raise ValueError("innovation must vary in time, got a component that is constant")
-    white = white - white.mean(axis=-2, keepdims=True)
-    power = np.sum(white**2, axis=-2)
-    autocorrelation = np.stack(
-        [
-            np.sum(white[..., lag:, :] * white[..., :-lag, :], axis=-2) / power
-            for lag in range(1, lags + 1)
-        ],
-        axis=-2,
+    n = np.where(used, n, 1)
+    white = np.where(there, white - (white.sum(axis=-2) / n)[..., None, :], 0.0)
+    power = np.where(used, np.sum(white**2, axis=-2), 1.0)
+    found = zip(*(_lag(white, there, lag) for lag in range(1, lags + 1)), strict=True)
+    products, pairs = (np.stack(one, axis=-2) for one in found)
+    known = used[..., None, :] & (pairs > 0)
+    pairs = np.where(known, pairs, 1)
+    n, ratio = n[..., None, :], products / power[..., None, :]
+    statistic = np.sum(np.where(known, n * (n + 2) / pairs * ratio**2, 0.0), axis=(-2, -1))
+    # The sum of products goes with the number of pairs, that of squares with the number of values.
+    whole = (samples - np.arange(1, lags + 1))[:, None] * n / (pairs * samples)
+    dof = known.sum(axis=(-2, -1))
+    return Whiteness(
+        np.where(known, ratio * whole, np.nan),
+        statistic,
+        lags * white.shape[-1] if known.all() else dof,
+        chi2_tail(statistic, dof),
     )
-    weight = samples * (samples + 2) / (samples - np.arange(1, lags + 1))
-    statistic = np.sum(weight[:, None] * autocorrelation**2, axis=(-2, -1))
-    dof = lags * m
-    return Whiteness(autocorrelation, statistic, dof, chi2.sf(statistic, dof))
 
 
-def _whiten(innovation, L):
-    """Return L^-1 innovation; factors L that all runs share are used once for all of them."""
-    if innovation.ndim > 2 and L.size == np.prod(L.shape[-3:]):
-        runs = innovation.reshape(-1, *innovation.shape[-2:])
-        columns = np.linalg.solve(L.reshape(L.shape[-3:]), np.moveaxis(runs, 0, -1))
-        return np.moveaxis(columns, -1, 0).reshape(innovation.shape)
-    return np.linalg.solve(L, innovation[..., None])[..., 0]
-
-
-def _record(innovation, S):
-    innovation = _checks.finite("innovation", innovation, (None, None))
-    samples, m = innovation.shape[-2:]
-    S = _checks.covariance("S", S, m)
-    _checks.check_shape("S", S, (samples, m, m))
-    _checks.check_broadcast("innovation", innovation.shape[:-2], "S", S.shape[:-3])
-    return innovation, S
+def _lag(white, there, lag):
+    """Return the sums of the products of values `lag` apart, and how many there are."""
+    products = np.sum(white[..., lag:, :] * white[..., :-lag, :], axis=-2)
+    return products, np.sum(there[..., lag:, :] & there[..., :-lag, :], axis=-2)

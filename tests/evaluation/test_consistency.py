@@ -150,7 +150,7 @@ FINE = track(np.zeros((3, 4, 2)), np.tile(EYE, (3, 4, 1, 1)))
         (
             track(FINE.x, -FINE.P),
             np.ones((4, 2)),
-            "track.P must be positive definite, .*NEES of -2",
+            "track.P must be positive semidefinite, got a smallest eigenvalue of -1",
         ),
     ],
 )
@@ -164,7 +164,9 @@ def test_nees_refuses_what_does_not_belong_together(estimate, truth, message):
     [
         ([1, 2, 3], EYE, r"S must have shape \(\.\.\., 3, 3\), got \(2, 2\)"),
         (1.0, EYE, r"innovation must have shape \(\.\.\., any\), got \(\)"),
-        ([1, np.nan], EYE, "innovation must be finite, got nan"),
+        ([1, np.inf], EYE, "innovation must be finite, or NaN where it is missing, got inf"),
+        ([1, np.nan], [[-1, 0], [0, 1]], "S must be positive definite"),
+        ([1, np.nan], [[np.nan, 0], [0, 1]], "S must be finite, got nan"),
         ([1, 2], np.inf * np.ones((2, 2)), "S must be finite, got inf"),
         ([1, 2], [[1, 0.5], [0, 1]], "S must be symmetric, got a difference of 0.5"),
         ([1, 2], [[1, 2], [2, 1]], "S must be positive definite, got a smallest eigenvalue of -1"),

@@ -45,10 +45,17 @@ def test_one_covariance_serves_many_errors(covariance):
     [
         ([1, 2, 3], np.eye(2), "P must have shape"),
         ([1, np.nan], np.eye(2), "error must be finite"),
-        ([1, 2], -np.eye(2), "P must be positive definite"),
+        ([1, 2], -np.eye(2), "P must be positive semidefinite"),
         (np.ones((3, 2)), np.stack([np.eye(2)] * 2), "broadcast"),
     ],
 )
 def test_wrong_arguments_are_named(error, P, message):
     with pytest.raises(ValueError, match=message):
         errors_by_direction(error, P)
+
+
+def test_an_axis_without_spread_has_no_error_or_an_infinite_one():
+    P = np.diag([4.0, 0.0, 1.0])
+    assert errors_by_direction([2.0, 0.0, 3.0], P).tolist() == [1.0, 3.0, 0.0]
+    assert errors_by_direction([2.0, -1e-3, 3.0], P).tolist() == [1.0, 3.0, -np.inf]
+    assert errors_by_direction(np.zeros(3), 0 * P).tolist() == [0.0, 0.0, 0.0]

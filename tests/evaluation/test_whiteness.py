@@ -166,14 +166,15 @@ def test_a_batch_is_its_members(white):
 
 X = np.random.default_rng(26).standard_normal((30, 2))
 S2 = identity(30, 2)
-NAN = np.where(np.arange(60).reshape(30, 2) == 7, np.nan, X)
+NAN, INF = (np.where(np.arange(60).reshape(30, 2) == 7, bad, X) for bad in (np.nan, np.inf))
 
 
 @pytest.mark.parametrize("function", [innovation_mean, innovation_whiteness])
 @pytest.mark.parametrize(
     ("innovation", "S", "message"),
     [
-        (NAN, S2, "innovation must be finite, got nan"),
+        (INF, S2, "innovation must be finite, or NaN where it is missing, got inf"),
+        (NAN, S2 * [[-1, 0], [0, 1]], "S must be positive definite"),
         (X, np.full((30, 2, 2), np.inf), "S must be finite, got inf"),
         (X[:, 0], S2, r"innovation must have shape|S must have shape"),
         (X, S2[:29], r"S must have shape \(\.\.\., 30, 2, 2\), got \(29, 2, 2\)"),
