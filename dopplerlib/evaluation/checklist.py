@@ -6,13 +6,16 @@ from scipy.stats import chi2
 from .. import _checks
 from .._records import record
 from ..estimation.linear_kalman import kf_predict, kf_update
+from ..estimation.track import Track
 from ..kernels.doppler import doppler_shift as shift_kernel
-from ..model.doppler import doppler_jacobian, doppler_shift
+from ..model.doppler import check_clear_of_sensors, doppler_jacobian, doppler_shift
 from ..model.motion import constant_velocity
 from ..model.radar_array import RadarArray
+from ..model.scenario import Scenario
 from .consistency import nees
 
 _STEP = 1e-30  # of the complex step: it cancels no digits, so it may be as small as one likes
+_LAGS = 5  # of the test for memory
 _SMALL = 1e-6  # shrinks noise and start until the filter is linear to as many digits
 
 
@@ -31,6 +34,11 @@ class Check:
         What came out.
     limit : float
         What was allowed.
+
+    Raises
+    ------
+    ValueError
+        If `kind` is unknown, `value` is no number or `limit` is not finite.
     """
 
     name: str
@@ -38,9 +46,15 @@ class Check:
     value: float
     limit: float
 
+    def __post_init__(self):
+        """Check the fields."""
+        _checks.one_of("kind", self.kind, ("exact", "statistical"))
+        _checks.one_number("value", self.value, _checks.real)
+        _checks.one_number("limit", self.limit)
+
     @property
     def passed(self):
-        """Whether the filter passes."""
+        """Whether the filter passes; never if `value` is NaN."""
         good = self.value <= self.limit if self.kind == "exact" else self.value >= self.limit
         return bool(good)
 
@@ -63,14 +77,16 @@ def complex_step_jacobian(x, array):
     Raises
     ------
     ValueError
-        If `x` has the wrong shape or is not finite.
+        If `x` has the wrong shape, is not finite or on a sensor, or `array` is no `RadarArray`.
 
     Notes
     -----
     h(x + i e) = h(x) + i e h'(x) - ..., so the imaginary part over e is the derivative; no
     difference of nearly equal numbers is taken (Squire and Trapp 1998).
     """
-    x = _checks.finite("x", x, (6,))[..., None, None, :] + 1j * _STEP * np.eye(6)
+    x = _checks.finite("x", x, (6,))
+    check_clear_of_sensors("x", x, _checks.instance("array", array, RadarArray))
+    x = x[..., None, None, :] + 1j * _STEP * np.eye(6)
     return shift_kernel(
         *np.moveaxis(x, -1, 0), *array.positions.T[:, :, None], array.doppler_per_speed
     ).imag / _STEP  # fmt: skip
@@ -101,9 +117,22 @@ def filter_checklist(tracker, jacobian, scenario, *, rng, runs=200, samples=100,
     -------
     tuple of Check
         The exact ones first. Each statistical one fails a filter that is right with a
-        probability of 0.001.
+        probability of 0.001. A value that cannot be computed from what the filter returns, such
+        as NEES with a P that is no covariance, is NaN, and fails.
+
+    Raises
+    ------
+    ValueError
+        If an argument is of the wrong kind, or what `tracker` or `jacobian` returns has the wrong
+        shape.
     """
-    s = scenario
+    s = _checks.instance("scenario", scenario, Scenario)
+    _checks.generator("rng", rng)
+    runs = _checks.whole_number("runs", runs)
+    samples = _checks.whole_number("samples", samples, least=_LAGS + 1)
+    deviation = _checks.one_number("deviation", deviation, _checks.deviation)
+    tracker = _checked(_checks.function("tracker", tracker))
+    _checks.function("jacobian", jacobian)
     F, Q = constant_velocity(s.T, s.sigma_p)
     P0 = deviation**2 * np.eye(6)
     settings = P0, s.T, s.sigma_p, s.sigma_f
@@ -113,23 +142,26 @@ def filter_checklist(tracker, jacobian, scenario, *, rng, runs=200, samples=100,
     before = s.x0 - s.T * np.r_[s.x0[3:], 0, 0, 0]
 
     true_H = complex_step_jacobian(calm, s.array)
-    H = np.stack([jacobian(x, s.array) for x in calm])
+    H = np.stack([_checks.real("what jacobian returns", jacobian(x, s.array)) for x in calm])
+    if H.shape != true_H.shape:
+        raise ValueError(
+            f"jacobian must return an array of shape {true_H.shape[1:]}, got {H.shape[1:]}"
+        )
     quiet = tracker(doppler_shift(calm, s.array)[None], s.array, before[None], *settings)
-    asymmetry = np.abs(track.P - track.P.mT).max() / np.abs(track.P).max()
-    spread = np.linalg.eigvalsh((track.P + track.P.mT) / 2)[..., 0].min()
-    last = nees(track, path)[:, -1]
+    last = Track(track.x[:, -1:], track.P[:, -1:], None, None, None, None)
     dof = track.innovation.size
     return (
         Check("Jacobian equals a complex step", "exact", _relative(H, true_H), 1e-12),
         Check("linear limit equals the Kalman filter", "exact",
               _linear_limit(tracker, s, calm, before, P0, F, Q, rng), 1e-3),
-        Check("P symmetric and positive", "exact", asymmetry if spread > 0 else np.inf, 1e-10),
+        Check("P symmetric and positive", "exact", _of(_asymmetry, track.P), 1e-10),
         Check("axes renamed, same track", "exact", _renamed(tracker, s, z, start, track, settings),
               1e-6),
         Check("stays on the truth without noise", "exact", np.abs(quiet.x - calm).max(), 1e-9),
         Check("NIS average", "statistical", _two_sided(track.nis.sum(), dof), 1e-3),
-        Check("innovations white", "statistical", _memory(track), 1e-3),
-        Check("NEES average", "statistical", _two_sided(last.sum(), 6 * runs), 1e-3),
+        Check("innovations white", "statistical", _of(_memory, track), 1e-3),
+        Check("NEES average", "statistical",
+              _two_sided(_of(lambda: nees(last, path[:, -1:]).sum()), 6 * runs), 1e-3),
     )  # fmt: skip
 
 
@@ -173,15 +205,46 @@ def _renamed(tracker, s, z, start, track, settings):
     return float(np.abs(other.x - renamed(track.x)).max())
 
 
-def _memory(track, lags=5):
+def _checked(tracker):
+    """Return the filter as one that raises if it returns no track, or one of wrong shapes."""
+
+    def checked(z, array, x0, *settings):
+        track = _checks.instance("what tracker returns", tracker(z, array, x0, *settings), Track)
+        for name, own in {"x": (6,), "P": (6, 6), "innovation": z.shape[2:], "S": z.shape[2:] * 2,
+                          "nis": ()}.items():  # fmt: skip
+            got, wanted = np.shape(getattr(track, name)), (*z.shape[:2], *own)
+            if got != wanted:
+                raise ValueError(
+                    f"{name} of what tracker returns must have shape {wanted}, got {got}"
+                )
+        return track
+
+    return checked
+
+
+def _of(function, *arguments):
+    """Return a number, or NaN if there is none for what a broken filter returned."""
+    try:
+        return function(*arguments)
+    except (ValueError, np.linalg.LinAlgError):
+        return np.nan
+
+
+def _asymmetry(P):
+    """Return the largest asymmetry, in shares of the largest entry; infinite if not definite."""
+    spread = np.linalg.eigvalsh((P + P.mT) / 2)[..., 0].min()
+    return np.abs(P - P.mT).max() / np.abs(P).max() if spread > 0 else np.inf
+
+
+def _memory(track):
     """Return the p-value of the correlation of innovations with those of the samples before.
 
     The innovations of a right filter have the variance S, so unlike in `innovation_whiteness`
     nothing is estimated: with many runs the error of that would show.
     """
     white = np.linalg.solve(np.linalg.cholesky(track.S), track.innovation[..., None])
-    products = [white[:, lag:] * white[:, :-lag] for lag in range(1, lags + 1)]
-    return float(chi2.sf(sum(one.sum() ** 2 / one.size for one in products), lags))
+    products = [white[:, lag:] * white[:, :-lag] for lag in range(1, _LAGS + 1)]
+    return float(chi2.sf(sum(one.sum() ** 2 / one.size for one in products), _LAGS))
 
 
 def _relative(value, expected):

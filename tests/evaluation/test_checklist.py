@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import doppler_jacobian, ekf
-from dopplerlib.evaluation.checklist import complex_step_jacobian, filter_checklist
+from dopplerlib.evaluation.checklist import Check, complex_step_jacobian, filter_checklist
 from dopplerlib.systems import sombatsatien as student
 
 SCENARIO = student.scenario("x")
@@ -88,3 +88,79 @@ def test_innovations_with_a_memory_are_found():
         return replace(track, innovation=innovation)
 
     assert "innovations white" in failed(spoiled(stale))
+
+
+@pytest.mark.parametrize(
+    ("change", "lost"),
+    [
+        (
+            lambda t: replace(t, x=t.x * np.nan),
+            {"stays on the truth without noise", "NEES average"},
+        ),
+        (lambda t: replace(t, P=t.P * np.nan), {"P symmetric and positive", "NEES average"}),
+        (lambda t: replace(t, P=0 * t.P), {"P symmetric and positive", "NEES average"}),
+        (lambda t: replace(t, S=-t.S), {"innovations white"}),
+        (lambda t: replace(t, S=t.S * np.nan), {"innovations white"}),
+        (lambda t: replace(t, innovation=t.innovation * np.nan), {"innovations white"}),
+        (lambda t: replace(t, nis=t.nis * np.nan), {"NIS average"}),
+    ],
+)
+def test_a_filter_that_returns_no_numbers_fails(change, lost):
+    checks = filter_checklist(
+        spoiled(change), lambda x, array: doppler_jacobian(x, array) * np.nan, SCENARIO,
+        rng=np.random.default_rng(1), runs=3, samples=9,
+    )  # fmt: skip
+    names = {check.name for check in checks if not check.passed}
+    assert lost | {"Jacobian equals a complex step"} <= names
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"tracker": 1}, "tracker must be a function, got 1"),
+        ({"tracker": lambda *a: 1}, "what tracker returns must be a Track, got 1"),
+        (
+            {"tracker": spoiled(lambda t: replace(t, P=None))},
+            r"P of what tracker returns must have shape \(2, 9, 6, 6\), got \(\)",
+        ),
+        ({"jacobian": None}, "jacobian must be a function, got None"),
+        ({"jacobian": lambda x, a: "no"}, "what jacobian returns must be an array of real numbers"),
+        ({"jacobian": lambda x, a: [1.0]}, r"jacobian must return an array of shape \(6, 6\)"),
+        ({"scenario": None}, "scenario must be a Scenario, got None"),
+        ({"rng": 5}, "rng must be a numpy.random.Generator"),
+        ({"runs": "x"}, "runs must be a whole number of at least 1, got 'x'"),
+        ({"samples": 5}, "samples must be a whole number of at least 6, got 5"),
+        ({"deviation": 0.0}, "deviation must be positive, got 0"),
+    ],
+)
+def test_what_is_no_filter_or_no_setting_is_refused(changed, message):
+    arguments = {"tracker": RIGHT, "jacobian": doppler_jacobian, "scenario": SCENARIO}
+    settings = {"rng": np.random.default_rng(1), "runs": 2, "samples": 9}
+    with pytest.raises(ValueError, match=message):
+        filter_checklist(**arguments | settings | changed)
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"kind": "exakt"}, "kind must be one of 'exact', 'statistical', got 'exakt'"),
+        ({"value": "1"}, "value must be an array of real numbers, got '1'"),
+        ({"limit": np.nan}, "limit must be finite, got nan"),
+    ],
+)
+def test_a_check_of_a_wrong_kind_is_refused(changed, message):
+    with pytest.raises(ValueError, match=message):
+        Check(**{"name": "a", "kind": "exact", "value": 1.0, "limit": 2.0} | changed)
+
+
+@pytest.mark.parametrize("kind", ["exact", "statistical"])
+def test_no_number_passes_no_check(kind):
+    assert not Check("a", kind, np.nan, 1.0).passed
+
+
+def test_a_place_on_a_sensor_has_no_derivative():
+    on_sensor = np.r_[SCENARIO.array.positions[2], 1.0, 0, 0]
+    with pytest.raises(ValueError, match="x must"):
+        complex_step_jacobian(on_sensor, SCENARIO.array)
+    with pytest.raises(ValueError, match="array must be a RadarArray, got 'x'"):
+        complex_step_jacobian(on_sensor, "x")
