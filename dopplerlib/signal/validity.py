@@ -102,23 +102,28 @@ def valid_samples(x, *, full_scale=None, longest_run=None, false_alarm=1e-9):
 
 
 def _alive(rows, full_scale, longest_run, false_alarm):
-    """Return the same for each branch of the modules, shape of `rows` (runs, S, branches, n)."""
+    """Return the same for each branch of the modules, shape of `rows` (runs, S, branches, n).
+
+    The values in `rows` are lost: of a long recording there should not be many copies.
+    """
     good = np.isfinite(rows)
-    rows = np.where(good, rows, 0.0)
+    rows[~good] = 0.0
     # Powers of two change no relation, and keep squares away from overflow.
-    exponent = -int(np.frexp(np.abs(rows).max())[1])
-    rows = np.ldexp(rows, exponent)
+    exponent = -int(np.frexp(max(rows.max(), -rows.min()))[1])
+    np.ldexp(rows, exponent, out=rows)
     unused = (rows == 0).all(axis=-1)
     unused[:, :, 0] = False  # without I, or without I and Q, a module is dead
     if full_scale is not None:
         stops = np.abs(rows) >= np.ldexp(full_scale, exponent)
     else:
         stops = _clipped(rows, good, false_alarm / 4)
-    moves = np.abs(np.diff(rows))
-    step = moves.min(axis=-1, initial=np.inf, where=moves > 0)
     good &= ~stops
-    own = _own_noise(rows, good)
+    moves = np.diff(rows)
+    np.abs(moves, out=moves)
     same = moves == 0
+    step = moves.min(axis=-1, initial=np.inf, where=~same)
+    del moves
+    own = _own_noise(rows, good)
     for place in zip(*np.nonzero(same.sum(axis=-1) > 1), strict=True):
         change = np.flatnonzero(~same[place]) + 1
         length = np.diff(change, prepend=0, append=rows.shape[-1])
@@ -144,7 +149,8 @@ def _clipped(rows, good, chance):
     """Return which samples are at an extreme that repeats too often."""
     at = np.zeros(rows.shape, dtype=bool)
     for sign in (1, -1):
-        heights = np.where(good, sign * rows, -np.inf)
+        heights = np.where(good, rows, -sign * np.inf)
+        heights *= sign
         top = heights.max(axis=-1, keepdims=True)
         here = good & (heights == top)
         heights[here] = -np.inf
@@ -159,6 +165,7 @@ def _clipped(rows, good, chance):
         )
         many = (b > 0) & (share > _ODDS) & (total * excess > -np.log(chance))
         at |= here & many[..., None]
+        del heights, here  # before the others take as much again
     return at
 
 
