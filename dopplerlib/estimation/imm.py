@@ -26,7 +26,6 @@ class ImmTrack:
     mode: np.ndarray
 
 
-@_checks.quiet
 def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     """Filter whole records with several linear models between which the target may switch.
 

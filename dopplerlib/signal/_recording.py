@@ -1,13 +1,12 @@
-"""A recording, and what its two formats on disk have in common."""
+"""A recording: IQ samples of several sensors, and which of them are measurements."""
 
-from datetime import UTC, datetime
-from os import PathLike
-from pathlib import Path
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 
 from .. import _checks
 from .._records import record
+from .validity import valid_samples
 
 
 @record
@@ -17,19 +16,72 @@ class Recording:
     Attributes
     ----------
     x : ndarray of complex, shape (S, n)
-        Samples of S sensors, taken at the same times.
+        Samples of S sensors, taken at the same times. Samples that are no measurements are as they
+        came; those that are not even finite are 0.
     fs : float
         Sampling rate in Hz.
     carrier : float
         Carrier frequency in Hz.
     start : datetime, optional
         Time of the first sample, with a time zone; what is read is in UTC.
+    valid : ndarray of bool, shape (S, n), optional
+        False where there is no measurement. If None, `valid_samples` tells it by the samples.
+
+    Raises
+    ------
+    ValueError
+        If `x` is no array (S, n) of numbers with samples in it, or not finite where `valid` is
+        True; if `fs` or `carrier` is not positive; if `start` has no time zone; or if `valid` is
+        no array of booleans with the shape of `x`.
+
+    Notes
+    -----
+    Without the samples that `valid` was decided from it says little: to exchange them, write
+    ``dataclasses.replace(recording, x=x, valid=None)``.
+
+    Examples
+    --------
+    >>> one = Recording([[1 + 1j, float("nan"), 2 - 1j]], fs=1000.0, carrier=24e9)
+    >>> one.valid
+    array([[ True, False,  True]])
+    >>> one.x
+    array([[1.+1.j, 0.+0.j, 2.-1.j]])
     """
 
     x: np.ndarray
     fs: float
     carrier: float
     start: datetime | None = None
+    valid: np.ndarray | None = None
+
+    def __post_init__(self):
+        x = _checks.numbers("x", self.x)
+        if x.ndim != 2 or not x.size:
+            raise ValueError(f"x must have shape (S, n) with samples in it, got {x.shape}")
+        finite = np.isfinite(x)
+        if self.valid is None:
+            valid = valid_samples(x)
+        else:
+            valid = np.asarray(self.valid)
+            if valid.dtype != bool or valid.shape != x.shape:
+                raise ValueError(
+                    f"valid must be an array of booleans of shape {x.shape}, got {valid.dtype} of "
+                    f"shape {valid.shape}"
+                )
+            wrong = np.argwhere(valid & ~finite)
+            if len(wrong):
+                place = tuple(map(int, wrong[0]))
+                raise ValueError(f"x must be finite where valid, got {x[place]} at index {place}")
+        if not finite.all():
+            x = np.where(finite, x, 0)
+        utc("start", self.start)
+        for name, value in (
+            ("x", x.astype(complex, copy=False)),
+            ("fs", _checks.positive_number("fs", self.fs)),
+            ("carrier", _checks.positive_number("carrier", self.carrier)),
+            ("valid", valid),
+        ):
+            object.__setattr__(self, name, value)
 
     @property
     def time(self):
@@ -44,79 +96,53 @@ class Recording:
         return speed_of_light / self.carrier
 
 
-def checked(recording):
-    """Return a recording's samples (S, n), or raise unless it can be written."""
-    _checks.instance("recording", recording, Recording)
-    x = _checks.finite_complex("recording.x", recording.x, (None, None))
-    if x.ndim != 2 or not x.size:
-        raise ValueError(f"recording.x must have shape (S, n) with samples in it, got {x.shape}")
-    _checks.positive_number("recording.fs", recording.fs)
-    _checks.positive_number("recording.carrier", recording.carrier)
-    utc("recording.start", recording.start)
-    return x
-
-
 def utc(name, start):
     """Return a moment in UTC, or None if that is what it is; raise if it is neither."""
     if start is None:
         return None
     if not isinstance(start, datetime) or start.utcoffset() is None:
         raise ValueError(f"{name} must be a datetime with a time zone or None, got {start!r}")
-    return start.astimezone(UTC)
+    return _moment(name, start, lambda: start.astimezone(UTC))
 
 
-def read_together(paths, end, read):
-    """Return one recording of the files `paths`, which must have the same clock.
+def later(start, seconds):
+    """Return the moment so many seconds after `start`, or None if `start` is."""
+    if start is None:
+        return None
+    return _moment("start", start, lambda: start + timedelta(seconds=seconds))
 
-    Parameters
-    ----------
-    paths : path-like or sequence of path-like
-        Files whose names end in `end`.
-    end : str
-    read : callable
-        Takes a path, returns a Recording with a sound carrier and start; the rest is checked here.
+
+def _moment(name, start, shifted):
+    try:
+        return shifted()
+    except OverflowError:
+        raise ValueError(
+            f"{name} must be a moment in the years 1 to 9999 of UTC, got {start}"
+        ) from None
+
+
+def numbers_to_store(recording, kind):
+    """Return the values (n, 2 S) of a recording as numbers of a type, or raise if they don't fit.
+
+    Whole numbers have 1 as their full scale.
     """
-    files = _existing(paths, end)
-    recordings = [read(path) for path in files]
-    for path, one in zip(files, recordings, strict=True):
-        if not one.x.size:
-            raise ValueError(f"{path.name} must hold samples, got none")
-        _checks.finite_complex(f"the array of samples in {path.name}", one.x)
-    first = recordings[0]
-    for path, one in zip(files[1:], recordings[1:], strict=True):
-        for name, ours, theirs in (
-            ("sampling rate", first.fs, one.fs),
-            ("carrier frequency", first.carrier, one.carrier),
-            ("start", first.start, one.start),
-            ("number of samples", first.x.shape[-1], one.x.shape[-1]),
-        ):
-            if ours != theirs:
-                raise ValueError(
-                    f"{path.name} must have the {name} of {files[0].name}, {ours}, got {theirs}"
-                )
-    x = np.concatenate([one.x for one in recordings])
-    return Recording(x, first.fs, first.carrier, first.start)
-
-
-def _existing(paths, end):
-    """Return paths as a list of different files that exist."""
-    given = paths
-    if isinstance(paths, (str, PathLike)) or not hasattr(paths, "__iter__"):
-        paths = [paths]
-    paths = list(paths)
-    for path in paths:
-        if not isinstance(path, (str, PathLike)):
-            raise ValueError(f"paths must be a path or a sequence of paths, got {given!r}")
-        if not str(path).endswith(end) or not Path(path).is_file():
-            wanted = f"files {end} that exist" if end else "files that exist"
-            raise ValueError(f"paths must be {wanted}, got {str(path)!r}")
-    if not paths:
-        raise ValueError("paths must name at least one file, got none")
-    paths = [Path(path) for path in paths]
-    for i, path in enumerate(paths):
-        if any(path.samefile(other) for other in paths[:i]):
-            raise ValueError(f"paths must be different files, got {str(path)!r} twice")
-    return paths
+    values = np.ascontiguousarray(recording.x.T).view(float)
+    largest = np.abs(values).max()
+    if kind.kind == "f":
+        if largest > np.finfo(kind).max:
+            raise ValueError(
+                f"recording.x must be at most {np.finfo(kind).max:.3g} in both parts to be "
+                f"stored as {kind.name}, got {largest:.3g}"
+            )
+    else:
+        info = np.iinfo(kind)
+        values = np.round(values * -float(info.min))
+        if values.min() < info.min or values.max() > info.max:
+            raise ValueError(
+                f"recording.x must lie between -1 and 1 - 2^-{info.bits - 1} in both parts to be "
+                f"stored as {kind.name}, got {largest:.3g}"
+            )
+    return values.astype(kind)
 
 
 def first_line(error):

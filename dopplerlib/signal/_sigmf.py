@@ -1,27 +1,29 @@
-"""Recordings as SigMF: samples in one file, what they are in another."""
+"""Recordings as SigMF: samples in one file, what they are in another, or both in an archive."""
 
 import hashlib
-import json
 import re
-from datetime import datetime
+import tarfile
+import zipfile
 
 import numpy as np
 
 from .. import _checks
 from .._files import file_to_write, replacing
-from ._recording import Recording, checked, first_line, read_together, utc
+from .._lazy import require
+from ._joining import Source, existing, join
+from ._recording import Recording, first_line, numbers_to_store, utc
+from ._sigmf_metadata import INVALID, invalid_runs, parsed, segments, which_invalid
 
 _META, _DATA = ".sigmf-meta", ".sigmf-data"
-_FULL_SCALE = 2**15
-# Kinds of samples that are written: their names in SigMF and in NumPy.
+_ARCHIVES = (".sigmf", ".sigmf.gz", ".sigmf.xz", ".sigmf.zip")
+# Kinds of samples that are written: their names in SigMF and the type of I and Q in NumPy.
 _KINDS = {
     "complex128": ("cf64_le", "<f8"),
     "complex64": ("cf32_le", "<f4"),
     "int16": ("ci16_le", "<i2"),
 }
 _LARGEST = 1e12  # Hz: SigMF allows no sampling rate or frequency beyond
-# What says that the samples are elsewhere, or something else among them.
-_ELSEWHERE = ("core:dataset", "core:metadata_only", "core:trailing_bytes", "core:header_bytes")
+_BLOCK = 2**20  # values that are read at a time
 
 
 def write_sigmf(path, recording, samples="complex128", description=""):
@@ -48,20 +50,23 @@ def write_sigmf(path, recording, samples="complex128", description=""):
     Raises
     ------
     ValueError
-        If the folder does not exist, or `path` has one of the two endings; if `recording` is none,
-        its samples are not finite or too large for their kind, its rate or carrier is not positive
-        or beyond 1e12 Hz, or its start has no time zone; or if `description` is no text.
+        If `path` leads to no files that may be written, or has one of the two endings; if
+        `recording` is none, its samples are too large for their kind, or its rate or carrier is
+        beyond 1e12 Hz; or if `description` is no text.
     ModuleNotFoundError
         If the package ``sigmf`` is not installed.
 
     Notes
     -----
     SigMF 1.2 (https://sigmf.org). The hash of the samples is stored too, so that `read_sigmf`
-    notices a file that was cut or changed.
+    notices a file that was cut or changed, and which samples are no measurements, in the field
+    ``dopplerlib:invalid`` of an extension that others need not know: ``[sensor, first, count]``.
     """
+    require("sigmf", extra="recordings")
     from sigmf import SigMFFile, keys
 
-    path, x = file_to_write(path), checked(recording)
+    path = file_to_write(path)
+    _checks.instance("recording", recording, Recording)
     if path.name.endswith((_META, _DATA)):
         raise ValueError(f"path must be without {_META} and {_DATA}, got {str(path)!r}")
     kind, number = _KINDS[_checks.one_of("samples", samples, tuple(_KINDS))]
@@ -69,22 +74,23 @@ def write_sigmf(path, recording, samples="complex128", description=""):
     for name, value in (("fs", recording.fs), ("carrier", recording.carrier)):
         if value > _LARGEST:
             raise ValueError(f"recording.{name} must be at most 1e12 Hz for SigMF, got {value:g}")
-    values = _rounded(np.ascontiguousarray(x.T).view(float), samples).astype(number)
+    values = numbers_to_store(recording, np.dtype(number))
     info = {
         keys.DATATYPE_KEY: kind,
         keys.SAMPLE_RATE_KEY: float(recording.fs),
-        keys.NUM_CHANNELS_KEY: len(x),
+        keys.NUM_CHANNELS_KEY: len(recording.x),
     }
     if description:
         info[keys.DESCRIPTION_KEY] = description
+    if not recording.valid.all():
+        info[keys.EXTENSIONS_KEY] = [{"name": "dopplerlib", "version": "1.0.0", "optional": True}]
+        info[INVALID] = invalid_runs(recording.valid)
     capture = {keys.FREQUENCY_KEY: float(recording.carrier)}
     start = utc("recording.start", recording.start)
     if start is not None:
         stamp = start.replace(tzinfo=None).isoformat(timespec="microseconds")
         capture[keys.DATETIME_KEY] = f"{stamp}Z"
     data, meta = (path.with_name(f"{path.name}{end}") for end in (_DATA, _META))
-    for one in (data, meta):
-        file_to_write(one)
     with replacing(data, meta) as (new_data, new_meta):
         with new_data.open("wb") as file:  # tofile says of a full disk only how much went in
             file.write(values.data)
@@ -95,127 +101,169 @@ def write_sigmf(path, recording, samples="complex128", description=""):
     return meta
 
 
-def read_sigmf(paths):
+def read_sigmf(paths, carrier=None, *, layout=None, first=0, count=None):
     """Read a recording in SigMF.
 
     Parameters
     ----------
     paths : path-like or sequence of path-like
-        A file ``.sigmf-meta`` with a channel for each sensor, or one file for each sensor, in
-        their order.
+        A recording with a channel for each sensor, or one recording for each sensor, in their
+        order. A recording is an archive or a pair of files, named by either of them or by what
+        their names share. Those that start at different times are aligned, see `align`.
+    carrier : float, optional
+        Carrier frequency in Hz of a recording whose metadata have none.
+    layout : {"iq", "qi", "real"}, optional
+        What the numbers are: I and Q of each sensor in turn, Q and I in turn, or one real channel
+        a sensor. If None, what the metadata say: "iq" if the samples are complex, "real" if they
+        are not, unless pairs of them turn together like I and Q.
+    first, count : int, optional
+        Which samples to read, of those that all recordings have in common: `count` samples from
+        sample `first` on. By default all.
 
     Returns
     -------
     Recording
-        Samples that are stored as whole numbers are scaled to -1 ... 1.
+        Samples that are stored as whole numbers are scaled to -1 ... 1. With ``layout="real"`` the
+        analytic signal, whose Doppler shifts are positive: the sign is not known.
 
     Raises
     ------
     ValueError
-        If a file is missing, given twice, malformed, cut, changed after it was written, without
-        samples, with a sample that is not finite, or has no sampling rate or carrier; if it asks
-        for more than SigMF 1, or for an extension; or if files for several sensors do not belong
-        together.
+        If a file is missing, given twice, malformed, cut, changed after it was written or without
+        samples; if it has no sampling rate, or no carrier and `carrier` is None; if it changes its
+        carrier, or requires an extension; if recordings of several sensors do not belong together
+        or have no time in common; if `carrier` is not positive or not that of the metadata; if
+        `layout`, `first` or `count` do not fit; or if the recording does not fit into memory.
     ModuleNotFoundError
         If the package ``sigmf`` is not installed.
 
     Notes
     -----
-    SigMF 1.2. A file of several captures has gaps or changes its carrier, so it is refused. So is
-    one whose first sample is not that of its start, one with something other than samples in its
-    data (a "non-conforming dataset"), and one whose start has no time zone.
+    SigMF up to version 1.2. Captures that follow each other are one recording; if their global
+    indices or times leave a gap of more than a sample, the samples in it are invalid. A time
+    without a time zone is one in UTC, since SigMF knows no other. Data with something other than
+    samples among them (a "non-conforming dataset") are refused. The hash is compared if all
+    samples are read; of a part it would take longer than reading it.
     """
-    return read_together(paths, _META, _read)
+    require("sigmf", extra="recordings")
+    if carrier is not None:
+        carrier = _checks.positive_number("carrier", carrier)
+    whole = first == 0 and count is None
+    sources = [_source(path, carrier, whole) for path in existing(paths, _found)]
+    return join(sources, layout, first, count)
 
 
-def _rounded(values, samples):
-    """Return the numbers to store, or raise if their kind has no such large ones."""
-    largest = np.abs(values).max()
-    if samples == "int16":
-        values = np.round(values * _FULL_SCALE)
-        if values.min() < -_FULL_SCALE or values.max() > _FULL_SCALE - 1:
-            raise ValueError(
-                "recording.x must lie between -1 and 1 - 2^-15 in both parts to be stored as "
-                f"int16, got {largest:.3g}"
-            )
-    elif samples == "complex64" and largest > np.finfo(np.float32).max:
-        raise ValueError(
-            f"recording.x must be at most {np.finfo(np.float32).max:.3g} in both parts to be "
-            f"stored as complex64, got {largest:.3g}"
-        )
-    return values
+def _found(path):
+    """Return the file of metadata or the archive that a path means."""
+    if path.name.endswith(_ARCHIVES):
+        return path
+    base = path.name.removesuffix(_META).removesuffix(_DATA)
+    pair, *archives = (path.with_name(base + end) for end in (_META, *_ARCHIVES))
+    return next((one for one in (pair, *archives) if one.is_file()), pair)
 
 
-def _read(path):
+def _source(path, carrier, whole):
     try:
-        content = _metadata(path)
-        info, capture = content["global"], content["captures"][0]
-        values = _samples(path.with_name(path.name.removesuffix(_META) + _DATA), info)
-        stamp = capture.get("core:datetime")
-        start = utc("its core:datetime", None if stamp is None else datetime.fromisoformat(stamp))
+        content, raw = _opened(path)
+        info = content["global"]
+        number, real = _datatype(info["core:datatype"])
+        channels = info.get("core:num_channels", 1) * (1 if real else 2)
+        frame = channels * number.itemsize
+        if len(raw) % frame:
+            raise ValueError(f"its samples must be a multiple of {frame} bytes, got {len(raw)}")
+        start, pieces = segments(content, len(raw) // frame)
+        invalid = None if real else which_invalid(content, channels // 2)
+        if whole and "core:sha512" in info:
+            if hashlib.sha512(raw).hexdigest() != info["core:sha512"].lower():
+                raise ValueError("the hash of its samples must be core:sha512, got another one")
     except (ValueError, OSError, RecursionError) as error:
         raise ValueError(f"{path.name} is no sound SigMF recording: {first_line(error)}") from None
-    rate, carrier = info.get("core:sample_rate"), capture.get("core:frequency")
+    rate = info.get("core:sample_rate")
+    told = content["captures"][0].get("core:frequency") if content["captures"] else None
+    if None not in (carrier, told) and carrier != told:
+        raise ValueError(f"carrier must be that of {path.name}, {told}, got {carrier}")
+    carrier = carrier if told is None else told
     for name, value in (("sampling rate", rate), ("carrier frequency", carrier)):
         if value is None or not value > 0:
             raise ValueError(f"{path.name} must tell a positive {name}, got {value}")
-    return Recording(values, float(rate), float(carrier), start)
+    values = raw.view(number).reshape(-1, channels)
+
+    def blocks(first, count):
+        for at, row, many in pieces:
+            a, b = max(first, at), min(first + count, at + many)
+            for i in range(a, b, step := max(_BLOCK // channels, 1)):
+                j = min(i + step, b)
+                if row is None:
+                    yield np.full((j - i, channels), np.nan)
+                else:
+                    yield _scaled(values[row + i - at : row + j - at])
+
+    length = pieces[-1].at + pieces[-1].count
+    return Source(
+        path.name,
+        float(rate),
+        float(carrier or told),
+        start,
+        length,
+        channels,
+        real,
+        blocks,
+        invalid,
+    )
 
 
-def _metadata(path):
-    """Return the content of a file of metadata, or raise unless all of it can be obeyed."""
-    from jsonschema import Draft202012Validator
-    from jsonschema.exceptions import best_match
-    from sigmf.schema import get_schema
-
-    def refuse(word):
-        raise ValueError(f"its numbers must be finite, got {word}")
-
-    content = json.loads(path.read_bytes(), parse_constant=refuse)
-    error = best_match(Draft202012Validator(get_schema()).iter_errors(content))
-    if error is not None:
-        where = ".".join(map(str, error.absolute_path)) or "its content"
-        raise ValueError(f"{where}: {first_line(error.message)}")
-    info, captures = content["global"], content["captures"]
-    if not info["core:version"].startswith("1."):
-        raise ValueError(f"its core:version must be one of SigMF 1, got {info['core:version']}")
-    for extension in info.get("core:extensions", []):
-        if not extension["optional"]:
-            raise ValueError(f"it must do without extensions, got {extension['name']!r}")
-    if len(captures) != 1:
-        raise ValueError(f"it must have one capture, got {len(captures)}")
-    for name in _ELSEWHERE:
-        for part in (info, captures[0]):
-            if part.get(name):
-                raise ValueError(f"it must not have {name}, got {part[name]!r}")
-    for name, part in (("core:offset", info), ("core:sample_start", captures[0])):
-        if part.get(name, 0) != 0:
-            raise ValueError(f"its {name} must be 0, got {part[name]}")
-    return content
+def _opened(path):
+    """Return the metadata of a recording, and the bytes of its samples."""
+    if path.name.endswith(_ARCHIVES):
+        file = _archive(path)
+        content = parsed(file.dumps())
+        if file.data_file is None:
+            return content, np.frombuffer(file.data_buffer.getbuffer(), np.uint8)
+        data, place, length = file.data_file, file.data_offset, file.data_size_bytes
+    else:
+        content = parsed(path.read_bytes())
+        data = path.with_name(path.name.removesuffix(_META) + _DATA)
+        if not data.is_file():
+            raise ValueError(f"its samples must be in {data.name}, got no such file")
+        place, length = 0, data.stat().st_size
+    if not length:  # nothing cannot be mapped
+        return content, np.empty(0, np.uint8)
+    return content, np.memmap(data, np.uint8, "r", place, (length,))
 
 
-def _samples(path, info):
-    """Return the samples in a file, shape (S, n)."""
-    datatype, channels = info["core:datatype"], info.get("core:num_channels", 1)
-    found = re.fullmatch(r"([cr])([fiu])(8|16|32|64)(_[lb]e)?", datatype)
-    if not found or (found[4] is None) != (found[3] == "8"):
-        raise ValueError(f"its core:datatype must be one of SigMF, got {datatype!r}")
-    if found[1] != "c":
-        raise ValueError(f"it must hold complex samples, got {datatype}")
-    if not isinstance(channels, int):  # a schema takes 3.0 for a whole number
-        raise ValueError(f"its core:num_channels must be a whole number, got {channels}")
-    if not path.is_file():
-        raise ValueError(f"its samples must be in {path.name}, got no such file")
-    data = path.read_bytes()
-    if "core:sha512" in info and hashlib.sha512(data).hexdigest() != info["core:sha512"].lower():
-        raise ValueError("the hash of its samples must be core:sha512, got another one")
-    kind, bits = found[2], int(found[3])
-    number = np.dtype(f"{'>' if found[4] == '_be' else '<'}{kind}{bits // 8}")
-    frame = 2 * channels * number.itemsize
-    if len(data) % frame:
-        raise ValueError(f"its samples must be a multiple of {frame} bytes, got {len(data)}")
-    values = np.frombuffer(data, number).astype(float)
+def _archive(path):
+    """Return an archive as `sigmf` opens it, or raise unless it holds one recording."""
+    from sigmf import fromfile
+
+    try:
+        if zipfile.is_zipfile(path):
+            with zipfile.ZipFile(path) as archive:
+                names = archive.namelist()
+        else:
+            with tarfile.open(path) as archive:
+                names = archive.getnames()
+        metadata = [name for name in names if name.endswith(_META)]
+        if len(metadata) != 1:  # sigmf would take the samples of one for those of another
+            raise ValueError(f"it must hold one recording, got {len(metadata)}")
+        return fromfile(path, skip_checksum=True)
+    except Exception as error:  # of tarfile, zipfile, lzma, zlib, jsonschema and sigmf
+        raise ValueError(first_line(error)) from None
+
+
+def _scaled(values):
+    """Return numbers as floats; whole ones are scaled to -1 ... 1."""
+    kind, bits = values.dtype.kind, 8 * values.dtype.itemsize
+    values = values.astype(float)
     if kind != "f":
-        half = 2.0 ** (bits - 1)
-        values = values / half - (kind == "u")
-    return np.ascontiguousarray(values).view(complex).reshape(-1, channels).T
+        values /= 2.0 ** (bits - 1)
+        values -= kind == "u"
+    return values
+
+
+def _datatype(name):
+    """Return the type of a number, and whether a sample is one of them instead of two."""
+    found = re.fullmatch(r"([cr])([fiu])(8|16|32|64)(_[lb]e)?", name)
+    if not found or (found[4] is None) != (found[3] == "8"):
+        raise ValueError(f"its core:datatype must be one of SigMF, got {name!r}")
+    order = ">" if found[4] == "_be" else "<"
+    return np.dtype(f"{order}{found[2]}{int(found[3]) // 8}"), found[1] == "r"

@@ -1,25 +1,35 @@
-"""Recordings as WAV: the channels are I and Q of each sensor in turn."""
+"""Recordings as WAV or FLAC: the channels are I and Q of each sensor in turn."""
 
-import warnings
+from contextlib import contextmanager
 
 import numpy as np
 
 from .. import _checks
 from .._files import file_to_write, replacing
-from ._recording import Recording, checked, first_line, read_together, utc
+from .._lazy import require
+from ._joining import Source, existing, join
+from ._recording import Recording, first_line, numbers_to_store, utc
+from ._wav_header import Plain, header
 
-_DOUBLE = 8  # bytes of a value
+_LARGEST = 2**32 - 1  # bytes that WAV can tell of
+_HEADER = 100  # bytes, at most
+_BLOCK = 2**20  # values that are read at a time
+_SUBTYPES = ("PCM_S8", "PCM_U8", "PCM_16", "PCM_24", "PCM_32", "FLOAT", "DOUBLE")
 
 
-def write_wav(path, recording):
-    """Write a recording as WAV without loss: the channels are I and Q of each sensor in turn.
+def write_wav(path, recording, samples="float64"):
+    """Write a recording as WAV: the channels are I and Q of each sensor in turn.
 
     Parameters
     ----------
     path : path-like
         Name of the file. An older one is replaced once the new one is complete.
     recording : Recording
-        What to write. WAV has no place for the carrier and the start: keep them elsewhere.
+        What to write. WAV has no place for the carrier, the start and what is valid: keep them
+        elsewhere, or use `write_sigmf`.
+    samples : {"float64", "float32", "int32", "int16"}
+        How a value is stored: without loss, which few programs open; in half the space; or as a
+        converter would give it, with 1 as the largest value. Every program opens the last one.
 
     Returns
     -------
@@ -28,75 +38,141 @@ def write_wav(path, recording):
     Raises
     ------
     ValueError
-        If the folder does not exist; if `recording` is none, its samples are not finite, or its
-        start has no time zone; or if its sampling rate is not a whole number of Hz, or rate and
-        sensors are more than WAV has numbers for: 2^32 bytes in a second, 2^16 in a sample.
+        If `path` leads to no file that may be written; if `recording` is none, or its samples are
+        too large for their kind; if its sampling rate is not a whole number of Hz; or if rate,
+        sensors and length are more than WAV has numbers for: 2^32 bytes in a second, 2^16 in a
+        sample, 2^32 altogether.
     """
     from scipy.io import wavfile
 
-    path, x = file_to_write(path), checked(recording)
-    fs, size = recording.fs, 2 * _DOUBLE * len(x)
+    path = file_to_write(path)
+    x = _checks.instance("recording", recording, Recording).x
+    kinds = ("float64", "float32", "int32", "int16")
+    kind = np.dtype(_checks.one_of("samples", samples, kinds))
+    fs, size = recording.fs, 2 * kind.itemsize * len(x)
     if fs != int(fs):
         raise ValueError(f"recording.fs must be a whole number of Hz for WAV, got {fs}")
     if size >= 2**16:
-        most = (2**16 - 1) // (2 * _DOUBLE)
+        most = (2**16 - 1) // (2 * kind.itemsize)
         raise ValueError(f"recording.x must have at most {most} sensors for WAV, got {len(x)}")
     if fs * size >= 2**32:
         raise ValueError(
             f"recording.fs must be less than {2**32 / size:g} Hz for {len(x)} sensors in WAV, "
             f"got {fs}"
         )
+    if size * x.shape[1] > _LARGEST - _HEADER:
+        most = (_LARGEST - _HEADER) // size
+        raise ValueError(
+            f"recording.x must have at most {most} samples for {len(x)} sensors in WAV, got "
+            f"{x.shape[1]}: write_sigmf takes more"
+        )
+    values = numbers_to_store(recording, kind)
     with replacing(path) as (temporary,):
-        wavfile.write(temporary, int(fs), np.ascontiguousarray(x.T).view(float))
+        wavfile.write(temporary, int(fs), values)
     return path
 
 
-def read_wav(paths, carrier, start=None):
-    """Read a recording from WAV files in which I and Q are a pair of channels.
+def read_wav(paths, carrier, start=None, *, layout=None, first=0, count=None):
+    """Read a recording from WAV or FLAC files.
 
     Parameters
     ----------
     paths : path-like or sequence of path-like
-        A file with two channels for each sensor, or one stereo file for each, in their order.
+        A file with the channels of all sensors, or one file for each, in their order.
     carrier : float
         Carrier frequency in Hz, for which WAV has no place.
-    start : datetime, optional
-        Time of the first sample, with a time zone.
+    start : datetime or sequence of datetime, optional
+        Time of the first sample, with a time zone: one for all files, or one for each. Files that
+        start at different times are aligned, see `align`.
+    layout : {"iq", "qi", "real"}, optional
+        What the channels are: I and Q of each sensor in turn, Q and I in turn, or one real channel
+        a sensor. If None, it is "iq", unless the samples say otherwise.
+    first, count : int, optional
+        Which samples to read, of those that all files have in common: `count` samples from sample
+        `first` on. By default all.
 
     Returns
     -------
     Recording
-        Samples that are stored as whole numbers are scaled to -1 ... 1.
+        Samples that are stored as whole numbers are scaled to -1 ... 1. With ``layout="real"`` the
+        analytic signal, whose Doppler shifts are positive: the sign is not known.
 
     Raises
     ------
     ValueError
-        If a file is missing, given twice, malformed, cut, without samples, with an odd number of
-        channels, or with a sample that is not finite; if files for several sensors do not belong
-        together; if `carrier` is not positive, or `start` is no datetime with a time zone.
+        If a file is missing, given twice, malformed, cut, compressed with losses or without
+        samples; if files for several sensors do not belong together or have no time in common; if
+        the channels are no pairs, or I and Q do not turn together and `layout` is None; if
+        `carrier` is not positive, or `start` is no datetime with a time zone; if `first` and
+        `count` are not in the files; or if the recording does not fit into memory.
+    ModuleNotFoundError
+        If the package ``soundfile`` is not installed.
+
+    Notes
+    -----
+    WAV (RIFF, RIFX, RF64, BW64) of PCM or floating-point numbers with whatever other chunks, read
+    by libsndfile. If the length of the samples was not known when the header was written, they go
+    on until the end of the file.
+
+    Two real channels are no I and Q: a line at f has an image at -f of the same strength. With
+    `layout` None, sensors whose strong lines, 18 dB above the noise in windows of 0.05 and 0.4 s,
+    turn in fewer than 60 % of the windows are refused. An imbalance of 3.5 dB and 25 degrees still
+    passes. So do real channels that have no strong line, and a pair of them that happens to see the
+    same Doppler shift a quarter turn apart: say ``layout="real"`` if it is so. Movements of less
+    than a quarter of a wavelength, hum without an echo and a Q that is only noise are refused,
+    too: ``layout="iq"`` reads them.
+
+    If I and Q are exchanged, all Doppler shifts have the wrong sign, which the samples do not tell;
+    the fit of `ml_start` does.
     """
     carrier = _checks.positive_number("carrier", carrier)
-    start = utc("start", start)
-    return read_together(paths, "", lambda path: _read(path, carrier, start))
+    alone = not hasattr(start, "__iter__") or isinstance(start, str)
+    starts = [utc("start", one) for one in ([start] if alone else start)]
+    files = existing(paths)
+    if alone:
+        starts *= len(files)
+    if len(starts) != len(files):
+        raise ValueError(f"start must be one for each of {len(files)} files, got {len(starts)}")
+    sources = [_source(path, carrier, one) for path, one in zip(files, starts, strict=True)]
+    return join(sources, layout, first, count)
 
 
-def _read(path, carrier, start):
-    from scipy.io import wavfile
+def _source(path, carrier, start):
+    with _sound(path) as sound:
+        if sound.subtype not in _SUBTYPES:
+            raise ValueError(f"it must hold samples without loss, got {sound.subtype_info}")
+        fs, length, channels = float(sound.samplerate), sound.frames, sound.channels
 
+    def blocks(first, count):
+        with _sound(path) as sound:
+            sound.seek(first)
+            while count:
+                part = sound.read(min(count, max(_BLOCK // channels, 1)), always_2d=True)
+                if not len(part):
+                    raise ValueError(f"its samples must be {length}, got {sound.tell()}")
+                yield part
+                count -= len(part)
+
+    return Source(path.name, fs, carrier, start, length, channels, None, blocks)
+
+
+@contextmanager
+def _sound(path):
+    """Give a file of sound to read from; what is wrong with it becomes a ValueError."""
+    require("soundfile", extra="wav")
+    from soundfile import LibsndfileError, SoundFile
+
+    kind = "WAV"
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            fs, values = wavfile.read(path)
-    except Exception as error:  # SciPy reads the header unguarded: struct.error and the like
-        raise ValueError(f"{path.name} is no sound WAV file: {first_line(error)}") from None
-    if not fs > 0:
-        raise ValueError(f"{path.name} must tell a positive sampling rate, got {fs}")
-    channels = 1 if values.ndim == 1 else values.shape[1]
-    if channels % 2:
-        raise ValueError(f"{path.name} must have two channels a sensor, I and Q, got {channels}")
-    if values.dtype.kind == "u":  # eight bits are stored without a sign
-        values = values / 2**7 - 1
-    elif values.dtype.kind == "i":
-        values = values / -float(np.iinfo(values.dtype).min)
-    x = np.ascontiguousarray(values, dtype=float).view(complex).T
-    return Recording(x, float(fs), carrier, start)
+        with path.open("rb") as file:
+            if file.read(4) == b"fLaC":
+                kind = "FLAC"
+                file.seek(0)
+            else:
+                file = Plain(file, header(file))
+            with SoundFile(file) as sound:
+                yield sound
+    except LibsndfileError as error:
+        raise ValueError(f"{path.name} is no sound {kind} file: {error.error_string}") from None
+    except (ValueError, OSError) as error:
+        raise ValueError(f"{path.name} is no sound {kind} file: {first_line(error)}") from None

@@ -35,7 +35,6 @@ class ManagedTrack:
     confirmed: np.ndarray
 
 
-@_checks.quiet
 def track_scans(
     scans, F, Q, h, H, R, start, manager, probability=0.999, assign=gnn_assign, wrap=(), new=None
 ):
@@ -99,11 +98,9 @@ def track_scans(
     """
     from scipy.special import chdtri  # here: it takes longer to load than all the rest
 
-    R = _checks.matrix("R", R, (None, None))
-    m = R.shape[0]
+    m = _checks.matrix("R", R, (None, None)).shape[0]
     R = _checks.covariance("R", R, m)
-    F = _checks.matrix("F", F, (None, None))
-    n = F.shape[0]
+    n = _checks.matrix("F", F, (None, None)).shape[0]
     F = _checks.matrix("F", F, (n, n))
     Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
     size = chdtri(m, 1 - _checks.probability("probability", probability))

@@ -25,6 +25,10 @@ def same(a, b):
     return np.array_equal(a.x, b.x) and (a.fs, a.carrier, a.start) == (b.fs, b.carrier, b.start)
 
 
+def with_x(recording, x):
+    return replace(recording, x=x, valid=None)
+
+
 def test_a_recording_tells_times_and_wavelength(recording):
     assert recording.time[[0, 1, -1]].tolist() == [0, 0.0005, 39 / 2000]
     assert recording.wavelength == pytest.approx(299792458 / 24.125e9, rel=1e-15)
@@ -46,7 +50,7 @@ def test_shorter_samples_are_rounded_and_no_more(recording, tmp_path, samples, e
 
 
 def test_one_file_for_each_sensor_is_one_recording(recording, tmp_path):
-    sensors = [replace(recording, x=row[None]) for row in recording.x]
+    sensors = [with_x(recording, row[None]) for row in recording.x]
     sigmf = [write_sigmf(tmp_path / f"s{i}", one) for i, one in enumerate(sensors)]
     assert same(read_sigmf(sigmf), recording)
     wav = [write_wav(tmp_path / f"s{i}.wav", one) for i, one in enumerate(sensors)]
@@ -78,7 +82,7 @@ def test_every_kind_of_complex_samples_is_read(recording, tmp_path, kind, order)
         info = np.iinfo(number)
         values = np.array([info.min, info.max, (info.min + info.max + 1) // 2] * 2)
         expected = np.array([-1, 1 - 2.0 ** (1 - bits), 0] * 2)
-    meta = write_sigmf(tmp_path / "a", replace(recording, x=np.ones((1, 3))))
+    meta = write_sigmf(tmp_path / "a", with_x(recording, np.ones((1, 3))))
     (tmp_path / "a.sigmf-data").write_bytes(values.astype(number).tobytes())
     name = f"c{kind[0]}{bits}" + ("" if bits == 8 else {"<": "_le", ">": "_be"}[order])
     edit(meta, lambda c: c["global"].update({"core:datatype": name}), keep_hash=False)
@@ -87,7 +91,7 @@ def test_every_kind_of_complex_samples_is_read(recording, tmp_path, kind, order)
 
 def test_the_least_number_of_16_bits_is_written(recording, tmp_path):
     x = np.array([[-1, 1 - 2**-15, -1j, 0.5]])
-    meta = write_sigmf(tmp_path / "a", replace(recording, x=x), "int16")
+    meta = write_sigmf(tmp_path / "a", with_x(recording, x), "int16")
     np.testing.assert_array_equal(read_sigmf(meta).x, x)
 
 
@@ -148,6 +152,12 @@ def put(part, name, value):
     )
 
 
+def add(row, frequency=None):
+    """Return a change that adds a capture."""
+    more = {} if frequency is None else {"core:frequency": frequency}
+    return lambda c: c["captures"].append({"core:sample_start": row} | more)
+
+
 WEIRD = {"name": "weird", "version": "1.0.0", "optional": False}
 
 
@@ -167,10 +177,10 @@ WEIRD = {"name": "weird", "version": "1.0.0", "optional": False}
         (put("capture", "datetime", "yesterday"), "datetime: 'yesterday' does not match"),
         (put("capture", "datetime", 5), "datetime: 5 is not of type 'string'"),
         (put("capture", "datetime", "2016-02-30T12:00:00Z"), "is no sound .*day"),
-        (put("capture", "datetime", "2016-09-28T12:00:00"), "core:datetime .* with a time zone"),
-        (put("capture", "sample_start", 10), "core:sample_start must be 0, got 10"),
+        (put("capture", "datetime", "0001-01-01T00:00:00+14:00"), "core:datetime .* years 1 to"),
+        (put("capture", "datetime", "9999-12-31T23:59:59-14:00"), "core:datetime .* years 1 to"),
+        (put("capture", "sample_start", 41), r"within 40 samples, .* \[41\], core:offset 0"),
         (put("capture", "header_bytes", 16), "must not have core:header_bytes, got 16"),
-        (put("global", "offset", 100), "core:offset must be 0, got 100"),
         (put("global", "trailing_bytes", 16), "must not have core:trailing_bytes, got 16"),
         (put("global", "dataset", "b.bin"), "must not have core:dataset, got 'b.bin'"),
         (put("global", "metadata_only", True), "must not have core:metadata_only, got True"),
@@ -184,16 +194,17 @@ WEIRD = {"name": "weird", "version": "1.0.0", "optional": False}
         (put("global", "datatype", "ci8_le"), "datatype must be one of SigMF, got 'ci8_le'"),
         (put("global", "datatype", "cf32_le,"), "datatype must be one of SigMF, got 'cf32_le,'"),
         (put("global", "version", "9.9.9"), "version must be one of SigMF 1, got 9.9.9"),
-        (put("global", "version", "0.0.1"), "version must be one of SigMF 1, got 0.0.1"),
-        (put("global", "extensions", [WEIRD]), "must do without extensions, got 'weird'"),
+        (put("global", "extensions", [WEIRD]), "require an extension, got 'weird', which is not"),
         (lambda c: c.pop("captures"), "'captures' is a required property"),
         (lambda c: c.update({"captures": {}}), "captures: {} is not of type 'array'"),
         (lambda c: c["global"].pop("core:datatype"), "'core:datatype' is a required property"),
         (lambda c: c["global"].pop("core:sample_rate"), "positive sampling rate, got None"),
         (lambda c: c["captures"][0].pop("core:frequency"), "positive carrier frequency, got None"),
-        (lambda c: c["captures"].append({"core:sample_start": 9}), "must have one capture, got 2"),
-        (lambda c: c["captures"].clear(), "must have one capture, got 0"),
-        (lambda c: c["global"].update({"core:datatype": "rf64_le"}), "must hold complex samples"),
+        (lambda c: c["captures"].clear(), "positive carrier frequency, got None"),
+        (add(9, 5.8e9), "must have one core:frequency, got 24125000000.0 and 58"),
+        (add(41), r"one after the other within 40 samples, .* \[0, 41\]"),
+        (lambda c: c["global"].update({"dopplerlib:invalid": [[3, 0, 1]]}), "list of .sensor, fi"),
+        (lambda c: c["global"].update({"dopplerlib:invalid": "all"}), "list of .sensor, fi"),
         (lambda c: c["global"].update({"core:datatype": "cf63_le"}), "is no sound SigMF recording"),
         (lambda c: c["global"].update({"core:sample_rate": "fast"}), "is no sound SigMF recording"),
         (lambda c: c.pop("global"), "is no sound SigMF recording"),
@@ -222,8 +233,6 @@ def test_metadata_that_are_none_are_refused(recording, tmp_path, text):
         (lambda b: b"", "a.sigmf-meta must hold samples, got none"),
         (lambda b: b[:-7], "samples must be a multiple of 48 bytes, got 1913"),
         (lambda b: b[:-16], "samples must be a multiple of 48 bytes, got 1904"),
-        (lambda b: b[:-8] + np.array(np.nan).tobytes(), "in a.sigmf-meta must be finite, got .*n"),
-        (lambda b: np.array(-np.inf).tobytes() + b[8:], "in a.sigmf-meta must be finite, got .*i"),
     ],
 )  # fmt: skip
 def test_samples_without_a_hash_are_looked_at_all_the_same(recording, tmp_path, change, message):
@@ -273,7 +282,9 @@ def header(place, kind, value):
         (lambda b: b"RIFFxxxxWAVE" + bytes(100), "is no sound WAV file: "),
         (header(10, "<H", 0), "is no sound WAV file: "),
         (header(10, "<H", 4), "is no sound WAV file: "),
-        (header(12, "<I", 0), "must tell a positive sampling rate, got 0"),
+        (header(12, "<I", 0), "is no sound WAV file: it must have channels and a .*got 6 and 0 Hz"),
+        (header(8, "<H", 7), "is no sound WAV file: it must hold PCM .* got format 7 of 64 bits"),
+        (header(22, "<H", 32), "is no sound WAV file: its frames must take 6 x 4 bytes, got 48"),
     ],
 )  # fmt: skip
 def test_a_malformed_wav_file_is_refused(recording, tmp_path, change, message):
@@ -287,9 +298,7 @@ def test_a_malformed_wav_file_is_refused(recording, tmp_path, change, message):
     "values, message",
     [
         (np.zeros((0, 2), np.int16), "a.wav must hold samples, got none"),
-        (np.array([[1.0, np.nan]], np.float32), "in a.wav must be finite, got .*nan"),
-        (np.array([[np.inf, 0.0]]), "in a.wav must be finite, got .*inf"),
-        (np.zeros((5, 3), np.int16), "a.wav must have two channels a sensor, I and Q, got 3"),
+        (np.zeros((5, 3), np.int16), "must have two channels a sensor, I and Q, .*'real', got 3"),
     ],
 )  # fmt: skip
 def test_wav_without_samples_or_with_strange_ones_is_refused(tmp_path, values, message):
@@ -300,7 +309,7 @@ def test_wav_without_samples_or_with_strange_ones_is_refused(tmp_path, values, m
 
 def test_a_wav_file_with_an_odd_channel_is_refused(tmp_path):
     wavfile.write(tmp_path / "a.wav", 1000, np.zeros(10, dtype=np.float32))
-    with pytest.raises(ValueError, match="must have two channels a sensor, I and Q, got 1"):
+    with pytest.raises(ValueError, match=r"two channels a sensor, I and Q, .*, got 1"):
         read_wav(tmp_path / "a.wav", 24e9)
 
 
@@ -309,9 +318,9 @@ def test_a_wav_file_with_an_odd_channel_is_refused(tmp_path):
     [
         ({"fs": 1000.0}, "the sampling rate of a.sigmf-meta, 2000.0, got 1000"),
         ({"carrier": 24e9}, "must have the carrier frequency of a.sigmf-meta"),
-        ({"start": NOON + timedelta(seconds=1)}, "must have the start of a.sigmf-meta"),
-        ({"start": None}, "must have the start of a.sigmf-meta, .*, got None"),
-        ({"x": np.ones((1, 39), complex)}, "must have the number of samples of .*, 40, got 39"),
+        ({"start": NOON + timedelta(seconds=1)}, "a.sigmf-meta must have samples when .* starts"),
+        ({"start": NOON - timedelta(seconds=1)}, "b.sigmf-meta must have samples when .* starts"),
+        ({"start": None}, "must have a start if and only if a.sigmf-meta .*, got None"),
     ],
 )  # fmt: skip
 def test_files_that_do_not_belong_together_are_refused(recording, tmp_path, other, message):
@@ -344,26 +353,19 @@ def test_files_that_do_not_belong_together_are_refused(recording, tmp_path, othe
         (lambda r, d: write_wav(d / "no" / "a", r), "in a folder that exists, got '.*no.a'"),
         (lambda r, d: write_sigmf(d / "a.sigmf-meta", r), "must be without .sigmf-meta and"),
         (lambda r, d: write_sigmf(d / "a", r, description=5), "description must be a str, got 5"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, start="noon")), "recording.start .* 'noon'"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, start=NAIVE)), "start must .* a time zone"),
-        (lambda r, d: write_wav(d / "a", replace(r, start=5)), "recording.start must .*, got 5"),
         (lambda r, d: write_sigmf(d / "a", replace(r, fs=2e12)), "fs must be at most .*got 2e.12"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, fs=np.nan)), "recording.fs must be finite"),
         (lambda r, d: write_sigmf(d / "a", replace(r, carrier=2e13)), "carrier .* most .*2e.13"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, x=r.x * np.nan)), "recording.x must be fin"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, x=r.x * 1e39), "complex64"), "most 3.4e.38"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, x=np.ones((1, 1))), "int16"), "got 1 *$"),
+        (lambda r, d: write_sigmf(d / "a", with_x(r, r.x * 1e39), "complex64"), "most 3.4e.38"),
+        (lambda r, d: write_sigmf(d / "a", with_x(r, np.ones((1, 1))), "int16"), "got 1 *$"),
         (lambda r, d: write_wav(d / "a", replace(r, fs=5e9)), "fs must be less than 8.9.*e.07"),
-        (lambda r, d: write_wav(d / "a", replace(r, x=np.ones((4096, 1)))), "at most 4095 sensors"),
+        (lambda r, d: write_wav(d / "a", with_x(r, np.ones((4096, 1)))), "at most 4095 sensors"),
         (lambda r, d: read_sigmf([]), "paths must name at least one file, got none"),
-        (lambda r, d: read_sigmf(d / "none.sigmf-meta"), "must be files .sigmf-meta that exist"),
+        (lambda r, d: read_sigmf(d / "none.sigmf-meta"), "paths must be files that exist, got"),
         (lambda r, d: read_wav(d / "none.wav", 24e9), "paths must be files that exist, got"),
         (lambda r, d: read_wav(d / "none.wav", 0), "carrier must be .*positive.*0"),
         (lambda r, d: write_sigmf(d / "a", r.x), "recording must be a Recording, got"),
         (lambda r, d: write_sigmf(d / "a", r, "int8"), "samples must be one of .*, got 'int8'"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, x=2 * r.x), "int16"), "-1 and 1 .*, got 1.9"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, x=r.x[0])), r"recording.x must have shape"),
-        (lambda r, d: write_sigmf(d / "a", replace(r, fs=-1.0)), "recording.fs must be .*positive"),
+        (lambda r, d: write_sigmf(d / "a", with_x(r, 2 * r.x), "int16"), "-1 and 1 .*, got 1.9"),
         (lambda r, d: write_wav(d / "a", replace(r, fs=1000.5)), r"number of Hz .*, got 1000.5"),
     ],
 )  # fmt: skip
@@ -385,7 +387,7 @@ def test_what_fails_half_way_leaves_the_older_files_as_they_were(
 
     monkeypatch.setattr(f"sigmf.SigMFFile.{name}", fail)
     with pytest.raises(OSError, match="no space left"):
-        write_sigmf(tmp_path / "a", replace(recording, x=2 * recording.x))
+        write_sigmf(tmp_path / "a", with_x(recording, 2 * recording.x))
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
