@@ -1,5 +1,7 @@
 """Checks of arguments, for the public edge: every error names argument, value and expectation."""
 
+from collections.abc import Iterator, MappingView
+
 import numpy as np
 
 # Rounding in a covariance, as a share of the two standard deviations that an entry belongs to: an
@@ -9,6 +11,10 @@ import numpy as np
 # that after it: this admits 1e6. Scaled by the diagonal, it does not depend on the units.
 _ROUNDING = 1e-9
 
+# Around every public function that computes: what is too large or too small for a float becomes
+# infinite, NaN or zero, whatever `np.seterr` says, and `estimates` looks at what comes out.
+quiet = np.errstate(all="ignore")
+
 _PLAIN = (float, int, np.ndarray, np.float64)
 
 
@@ -16,7 +22,7 @@ def real(name, value):
     """Return `value` as a float array, or raise unless it is made of real numbers.
 
     Text, booleans, None, complex numbers, dates, masks and units are refused, also inside lists:
-    NumPy would turn each of them into floats and lose what they meant.
+    NumPy would turn each of them into floats and lose what they meant. An iterator is a list.
     """
     return _numbers(name, value, "iuf", "real numbers").astype(float, copy=False)
 
@@ -334,6 +340,8 @@ def generator(name, value):
 
 def _numbers(name, value, kinds, wanted):
     """Return `value` as an array whose dtype is of one of `kinds`, or raise."""
+    if isinstance(value, (Iterator, MappingView)):
+        value = list(value)  # NumPy would make one object of it
     good = type(value) in _PLAIN or _nothing_is_lost(name, value, wanted, "b" in kinds)
     try:
         array = np.asarray(value)

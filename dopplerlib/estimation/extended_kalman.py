@@ -14,6 +14,7 @@ from .track import Track
 _OPTIONAL = ("P", "innovation", "S")
 
 
+@_checks.quiet
 def ekf(
     z,
     array,
@@ -167,6 +168,7 @@ def ekf(
     )
 
 
+@_checks.quiet
 def gate_bounds(gate, sensors, confidence=0.95):
     """Return the bounds of the gate on NIS for 0, 1, ..., `sensors` measurements.
 

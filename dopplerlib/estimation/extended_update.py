@@ -6,6 +6,7 @@ from .. import _checks
 from . import gaussian
 
 
+@_checks.quiet
 def ekf_innovation(x, P, z, h, H, R, wrap=()):
     """Return the innovation and its covariance: what a gate looks at before the update.
 
@@ -43,6 +44,7 @@ def ekf_innovation(x, P, z, h, H, R, wrap=()):
     return innovation, S
 
 
+@_checks.quiet
 def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     """Return the state and covariance after a measurement of a nonlinear function of the state.
 

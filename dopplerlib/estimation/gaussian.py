@@ -13,12 +13,10 @@ likelihood), and where all are missing the estimate stays as it was, bit by bit.
 
 import numpy as np
 
-# What is too large or too small for a float ends as inf, NaN or zero, whatever `np.seterr` says:
-# the public functions look at what came out.
-_quiet = np.errstate(all="ignore")
+from .. import _checks
 
 
-@_quiet
+@_checks.quiet
 def square_root(P):
     """Return square roots L of covariances: L L' is P to rounding.
 
@@ -44,7 +42,7 @@ def square_root(P):
         return np.where(finite, root, np.nan)
 
 
-@_quiet
+@_checks.quiet
 def squared(A):
     """Return A A', symmetric.
 
@@ -59,7 +57,7 @@ def squared(A):
     return _symmetric(_squared(A))
 
 
-@_quiet
+@_checks.quiet
 def predict(x, P, F, Q):
     """Return state and covariance after a linear step: F x and F P F' + Q.
 
@@ -80,7 +78,7 @@ def predict(x, P, F, Q):
     return _times(F, x), _symmetric(_squared(F @ square_root(P)) + Q)
 
 
-@_quiet
+@_checks.quiet
 def innovation(x, z, H):
     """Return measured minus predicted measurement, z - H x.
 
@@ -100,7 +98,7 @@ def innovation(x, z, H):
     return z - _times(H, x)
 
 
-@_quiet
+@_checks.quiet
 def gain(P, H, R, there=True):
     """Return the gain of an update, the covariance after it, and that of the innovation.
 
@@ -140,7 +138,10 @@ def gain(P, H, R, there=True):
     if not all_there:
         H, HL, R, used = _present(there, H, HL, R, S)
     _cholesky(used)
-    K = np.linalg.solve(used, HL @ L.mT).mT
+    try:
+        K = np.linalg.solve(used, HL @ L.mT).mT
+    except np.linalg.LinAlgError:  # one factorization may find what the other does not
+        raise _singular(used) from None
     A = np.eye(P.shape[-1]) - K @ H
     after = _symmetric(_squared(A @ L) + _squared(K @ square_root(R)))
     if not all_there:
@@ -148,7 +149,7 @@ def gain(P, H, R, there=True):
     return K, after, S
 
 
-@_quiet
+@_checks.quiet
 def moved(x, K, innovation):
     """Return states after a measurement: x + K innovation, without what is missing.
 
@@ -168,7 +169,7 @@ def moved(x, K, innovation):
     return x + _times(K, np.where(np.isnan(innovation), 0.0, innovation))
 
 
-@_quiet
+@_checks.quiet
 def update(x, P, innovation, H, R):
     """Return state and covariance after a measurement, and the covariance of the innovation.
 
@@ -196,7 +197,7 @@ def update(x, P, innovation, H, R):
     return moved(x, K, innovation), P, S
 
 
-@_quiet
+@_checks.quiet
 def quadratic_forms(v, S):
     """Return v' S^-1 v of many vectors with one covariance, such as the NIS of all detections.
 
@@ -224,7 +225,7 @@ def quadratic_forms(v, S):
     return quadratic_form(v, S[..., None, :, :])
 
 
-@_quiet
+@_checks.quiet
 def quadratic_form(v, S):
     """Return v' S^-1 v of each vector with a covariance of its own, such as NIS.
 
@@ -248,7 +249,7 @@ def quadratic_form(v, S):
     return _form(v, S)[0]
 
 
-@_quiet
+@_checks.quiet
 def log_density(v, S):
     """Return the logarithm of the density of zero-mean Gaussians at vectors.
 
@@ -276,7 +277,7 @@ def log_density(v, S):
     return np.where(size > 0, -form / 2 - logarithm, 0.0)
 
 
-@_quiet
+@_checks.quiet
 def mixture(x, P, weight):
     """Return mean and covariance of mixtures.
 
@@ -300,7 +301,7 @@ def mixture(x, P, weight):
     return mean, np.sum(weight[..., None, None] * spread, axis=-3)
 
 
-@_quiet
+@_checks.quiet
 def smooth(x, P, F, Q, x_next, P_next):
     """Return a filtered estimate after what a later one, smoothed, teaches about it.
 
@@ -320,10 +321,9 @@ def smooth(x, P, F, Q, x_next, P_next):
 
     Notes
     -----
-    Rauch, Tung, Striebel (1965) with the gain G = P F' (F P F' + Q)^+. The pseudo-inverse is the
-    inverse where there is one; a direction in which the prediction is certain teaches nothing. The
-    covariance P + G (P_next - F P F' - Q) G' is (I - G F) P (I - G F)' + G (Q + P_next) G': sums
-    only.
+    Rauch, Tung, Striebel (1965) with the gain G = P F' (F P F' + Q)^-1 by `solve`: a direction in
+    which the prediction is certain teaches nothing. The covariance P + G (P_next - F P F' - Q) G'
+    is (I - G F) P (I - G F)' + G (Q + P_next) G', which only adds.
     """
     L = square_root(P)
     FL = F @ L
@@ -331,13 +331,12 @@ def smooth(x, P, F, Q, x_next, P_next):
     G = solve(predicted, FL @ L.mT).mT
     x = x + _times(G, x_next - _times(F, x))
     A = np.eye(P.shape[-1]) - G @ F
-    parts = (A @ L, G @ square_root(Q), G @ square_root(P_next))
-    return x, _symmetric(sum(_squared(part) for part in parts))
+    return x, _symmetric(_squared(A @ L) + _squared(G @ square_root(Q + P_next)))
 
 
-@_quiet
+@_checks.quiet
 def solve(P, B):
-    """Return P^+ B: P^-1 B, but that directions without any spread but rounding take no part.
+    """Return P^-1 B, in which directions without any spread but rounding take no part.
 
     Parameters
     ----------
@@ -348,7 +347,8 @@ def solve(P, B):
     Returns
     -------
     ndarray, shape (..., n, k)
-        NaN where `P` is not finite.
+        By the pseudo-inverse after scaling to a diagonal of ones, where `P` is singular to
+        rounding. NaN where `P` is not finite.
     """
     n = P.shape[-1]
     # The entries of a square of n columns, scaled to a diagonal of ones, are off by n roundings, so
@@ -397,11 +397,15 @@ def _cholesky(S):
     except np.linalg.LinAlgError:
         finite = np.isfinite(S).all(axis=(-2, -1), keepdims=True)
         if finite.all():
-            raise ValueError(
-                "R must make H P H' + R positive definite, got a smallest eigenvalue of "
-                f"{np.linalg.eigvalsh(S)[..., 0].min():.3g}, zero to rounding"
-            ) from None
+            raise _singular(S) from None
         return np.where(finite, _cholesky(np.where(finite, S, np.eye(S.shape[-1]))), np.nan)
+
+
+def _singular(S):
+    return ValueError(
+        "R must make H P H' + R positive definite, got a smallest eigenvalue of "
+        f"{np.linalg.eigvalsh(S)[..., 0].min():.3g}, zero to rounding"
+    )
 
 
 def _eigen(P):

@@ -26,6 +26,7 @@ class ImmTrack:
     mode: np.ndarray
 
 
+@_checks.quiet
 def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
     """Filter whole records with several linear models between which the target may switch.
 

@@ -7,6 +7,7 @@ from . import gaussian
 from .track import Track
 
 
+@_checks.quiet
 def kf_predict(x, P, F, Q):
     """Return the predicted state and covariance: F x and F P F' + Q.
 
@@ -55,6 +56,7 @@ def kf_predict(x, P, F, Q):
     return x, P
 
 
+@_checks.quiet
 def kf_update(x, P, z, H, R):
     """Return the state and covariance after a measurement, in Joseph form.
 
@@ -115,6 +117,7 @@ def kf_update(x, P, z, H, R):
     return x, P, innovation, S
 
 
+@_checks.quiet
 def kf(z, F, Q, H, R, x0, P0):
     """Filter whole records with a linear Kalman filter, many runs at once.
 
@@ -195,5 +198,6 @@ def kf(z, F, Q, H, R, x0, P0):
     P, S = (np.stack(values, axis=0 if shared else len(batch)) for values in (P, S))
     _checks.estimates("F, Q, H, R, x0, P0, z", x, P, S, np.where(there, innovation, 0.0))
     nis = gaussian.quadratic_form(innovation, S)
+    _checks.estimates("z", np.where(there.any(axis=-1), nis, 0.0))
     P, S = (np.broadcast_to(v, (*batch, *v.shape[-3:])) for v in (P, S))
     return Track(x, P, innovation, S, nis, there.any(axis=-1))

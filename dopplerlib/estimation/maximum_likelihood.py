@@ -58,6 +58,7 @@ class Start:
     second_cost: np.ndarray
 
 
+@_checks.quiet
 def ml_start(z, array, sigma_f, T, box, likelihood="moving", *, at="first", workers=None):
     """Estimate states from scratch: the global maximum of the likelihood in a box.
 

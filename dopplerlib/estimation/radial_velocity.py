@@ -29,6 +29,7 @@ class RadialVelocity:
     predicted: np.ndarray
 
 
+@_checks.quiet
 def radial_velocity_terms(x, P, sigma, variance="corrected"):
     """Return matrix, bias and variance with which a radial velocity updates a state.
 
@@ -82,6 +83,7 @@ def radial_velocity_terms(x, P, sigma, variance="corrected"):
     return _terms(x, P, sigma, variance)
 
 
+@_checks.quiet
 def radial_velocity_update(x, P, z, sigma, variance="corrected"):
     """Return state and covariance after a measured radial velocity.
 
@@ -138,7 +140,10 @@ def _terms(x, P, sigma, variance):
     Y, v = x[..., :n], x[..., n:]
     d = np.linalg.norm(Y, axis=-1)
     if not d.all():
-        raise ValueError("x must not have a position of zero, where no direction is radial")
+        raise ValueError(
+            "x must have a position whose square is positive, where a direction is radial, got "
+            f"{Y[d == 0][0].tolist()}"
+        )
     u = Y / d[..., None]
     A = (np.eye(n) - u[..., :, None] * u[..., None, :]) / d[..., None, None]
     B = np.zeros((*d.shape, 2 * n, 2 * n))

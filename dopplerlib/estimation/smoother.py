@@ -6,6 +6,7 @@ from .. import _checks
 from . import gaussian
 
 
+@_checks.quiet
 def rts_smooth(x, P, F, Q):
     """Return the states given the whole record, from those that a Kalman filter returned.
 

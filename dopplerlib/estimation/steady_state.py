@@ -1,11 +1,14 @@
 """The Kalman filter after a long time: its constant gain, and how far it lags behind."""
 
+import warnings
+
 import numpy as np
 
 from .. import _checks
 from . import gaussian
 
 
+@_checks.quiet
 def steady_state_gain(F, Q, H, R):
     """Return the gain and the covariance to which a Kalman filter settles.
 
@@ -45,7 +48,8 @@ def steady_state_gain(F, Q, H, R):
     >>> round(float(K[0, 0]), 6)
     0.618034
     """
-    from scipy.linalg import solve_discrete_are  # here: it takes longer to load than all the rest
+    # Here: it takes longer to load than all the rest.
+    from scipy.linalg import LinAlgWarning, solve_discrete_are
 
     H = _checks.matrix("H", H, (None, None))
     m, n = H.shape
@@ -53,8 +57,11 @@ def steady_state_gain(F, Q, H, R):
     Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
     R = _checks.matrix("R", _checks.covariance("R", R, m), (m, m))
     try:
-        predicted = solve_discrete_are(F.T, H.T, Q, R)
-    except np.linalg.LinAlgError:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", LinAlgWarning)
+            # SciPy takes no rounding across the diagonal.
+            predicted = solve_discrete_are(F.T, H.T, (Q + Q.T) / 2, (R + R.T) / 2)
+    except (np.linalg.LinAlgError, LinAlgWarning, ValueError):
         raise ValueError("F, H, Q must let the filter settle, got no stable solution") from None
     K, P, _ = gaussian.gain(predicted, H, R)
     A = np.eye(n) - K @ H
@@ -64,6 +71,7 @@ def steady_state_gain(F, Q, H, R):
     return K, P
 
 
+@_checks.quiet
 def steady_state_lag(F, H, K, push):
     """Return how far behind a filter of constant gain stays when the truth departs from its model.
 

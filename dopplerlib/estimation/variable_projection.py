@@ -7,6 +7,7 @@ from ..model.doppler import doppler_jacobian
 from ..model.radar_array import RadarArray
 
 
+@_checks.quiet
 def best_velocity(z, array, sigma_f, p, in_plane=False):
     """Return the velocity that explains Doppler shifts best if the position is known.
 
@@ -58,9 +59,10 @@ def best_velocity(z, array, sigma_f, p, in_plane=False):
     sigma_f = _checks.each_run("sigma_f", _checks.deviation("sigma_f", sigma_f), (len(array),), ())
     p = _checks.finite("p", p, (3,))
     A = doppler_jacobian(np.concatenate([p, 0 * p], axis=-1), array)[..., 3:] / sigma_f[:, None]
-    A[..., 2] *= not in_plane
+    A[..., 2] *= not _checks.one_boolean("in_plane", in_plane)
     y = z / sigma_f
     # A direction that no sensor sees leaves a singular value of 1e-16.
     v = np.linalg.pinv(A, rcond=1e-12) @ y
-    residual = y - np.einsum("...ni,...i->...n", A, v)
-    return v, np.sum(residual**2, axis=-1)
+    cost = np.sum((y - np.einsum("...ni,...i->...n", A, v)) ** 2, axis=-1)
+    _checks.estimates("z, sigma_f, p", v, cost)
+    return v, cost

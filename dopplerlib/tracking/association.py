@@ -5,6 +5,7 @@ import numpy as np
 from .. import _checks
 
 
+@_checks.quiet
 def nearest_neighbor(distance, accept=None):
     """Return the nearest of the detections that are accepted.
 
@@ -50,6 +51,7 @@ def nearest_neighbor(distance, accept=None):
     return np.where(np.isfinite(distance.min(axis=-1)), nearest, -1)
 
 
+@_checks.quiet
 def greedy_assign(cost, gate):
     """Return an assignment that takes the cheapest pair first, then the cheapest of the rest.
 
@@ -91,6 +93,7 @@ def greedy_assign(cost, gate):
     return assigned
 
 
+@_checks.quiet
 def gnn_assign(cost, gate):
     """Return the assignment of least total cost: the global nearest neighbor.
 

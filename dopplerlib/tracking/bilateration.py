@@ -5,6 +5,7 @@ import numpy as np
 from .. import _checks
 
 
+@_checks.quiet
 def bilaterate(d1, d2, baseline):
     """Return where two circles about two radars on the x axis meet, on the side of positive y.
 

@@ -6,6 +6,7 @@ from .. import _checks
 from ..estimation import gaussian
 
 
+@_checks.quiet
 def fuse_state_vectors(x1, P1, x2, P2, P12=None):
     """Fuse two estimates by their covariances, with or without what they have in common.
 
@@ -83,6 +84,7 @@ def _independent(x1, P1, x2, P2):
     return x, P
 
 
+@_checks.quiet
 def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
     """Return the covariance between the errors of two filters after one more cycle.
 
@@ -105,7 +107,8 @@ def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
     Raises
     ------
     ValueError
-        If shapes do not fit or a value is not finite.
+        If shapes do not fit, a value is not finite, or `Q` is not a covariance (it may be
+        singular).
 
     Notes
     -----
@@ -118,7 +121,7 @@ def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
     """
     P12 = _checks.finite("P12", P12, (None, None))
     n = P12.shape[-1]
-    F, Q = _checks.finite("F", F, (n, n)), _checks.finite("Q", Q, (n, n))
+    F, Q = _checks.finite("F", F, (n, n)), _checks.covariance("Q", Q, n, definite=False)
     leading, keep = {"P12": (P12, 2), "F": (F, 2), "Q": (Q, 2)}, []
     for K_name, K, H_name, H in (("K1", K1, "H1", H1), ("K2", K2, "H2", H2)):
         K = _checks.finite(K_name, K, (n, None))
@@ -127,9 +130,12 @@ def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
         keep.append((K, H))
     _checks.check_leading(**leading)
     keep = [np.eye(n) - K @ H for K, H in keep]
-    return keep[0] @ (F @ P12 @ np.swapaxes(F, -1, -2) + Q) @ np.swapaxes(keep[1], -1, -2)
+    P12 = keep[0] @ (F @ P12 @ F.mT + Q) @ keep[1].mT
+    _checks.estimates("P12, F, Q, K1, H1, K2, H2", P12)
+    return P12
 
 
+@_checks.quiet
 def covariance_intersection(x1, P1, x2, P2, w=None):
     """Fuse two estimates of which nobody knows what they have in common.
 
@@ -193,6 +199,7 @@ def covariance_intersection(x1, P1, x2, P2, w=None):
     return x, P
 
 
+@_checks.quiet
 def fuse_measurements(z1, R1, z2, R2):
     """Return the weighted mean of two independent measurements of the same thing.
 

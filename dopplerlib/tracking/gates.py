@@ -5,6 +5,7 @@ import numpy as np
 from .. import _checks
 
 
+@_checks.quiet
 def chi2_gate(nis, m, probability):
     """Return where a measurement is inside the gate of this probability.
 
@@ -45,6 +46,7 @@ def chi2_gate(nis, m, probability):
     return nis <= chdtri(m, 1 - _checks.probability("probability", probability))
 
 
+@_checks.quiet
 def fixed_box_gate(innovation, half_widths):
     """Return where every component of the innovation is inside a box of fixed size.
 

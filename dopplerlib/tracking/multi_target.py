@@ -35,6 +35,7 @@ class ManagedTrack:
     confirmed: np.ndarray
 
 
+@_checks.quiet
 def track_scans(
     scans, F, Q, h, H, R, start, manager, probability=0.999, assign=gnn_assign, wrap=(), new=None
 ):
@@ -98,9 +99,11 @@ def track_scans(
     """
     from scipy.special import chdtri  # here: it takes longer to load than all the rest
 
-    m = _checks.matrix("R", R, (None, None)).shape[0]
+    R = _checks.matrix("R", R, (None, None))
+    m = R.shape[0]
     R = _checks.covariance("R", R, m)
-    n = _checks.matrix("F", F, (None, None)).shape[0]
+    F = _checks.matrix("F", F, (None, None))
+    n = F.shape[0]
     F = _checks.matrix("F", F, (n, n))
     Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
     size = chdtri(m, 1 - _checks.probability("probability", probability))

@@ -29,6 +29,7 @@ class PdaUpdate:
     weight: np.ndarray
 
 
+@_checks.quiet
 def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
     """Update a state with several detections, of which at most one is of the target.
 

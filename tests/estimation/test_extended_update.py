@@ -51,6 +51,19 @@ def test_refused_and_missing_measurements_leave_the_prediction():
     assert np.isnan(innovation[2]).all() and np.isfinite(innovation[1]).all()
 
 
+def test_a_component_that_is_missing_is_a_row_that_is_missing():
+    holes = z.copy()
+    holes[1, 0] = holes[2, 1:] = np.nan
+    got = ekf_update(x, P, holes, linear_h, linear_H, R)
+    for run in range(runs):
+        row = ~np.isnan(holes[run])
+        want = kf_update(x[run], P, z[run, row], LINEAR[row], R[row][:, row])
+        np.testing.assert_allclose(got[0][run], want[0], rtol=1e-11, atol=1e-12)
+        np.testing.assert_allclose(got[1][run], want[1], rtol=1e-11, atol=1e-12)
+    np.testing.assert_array_equal(np.isnan(got[2]), np.isnan(holes))
+    np.testing.assert_allclose(got[3], LINEAR @ P @ LINEAR.T + R, rtol=1e-11)
+
+
 def test_an_angle_that_wraps_is_the_angle_next_to_it():
     """A target behind the radar, on either side of the cut at 180 degrees."""
     target = np.array([0.01, 0.0, -5.0, 1.0])

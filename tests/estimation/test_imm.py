@@ -68,6 +68,38 @@ def test_the_first_step_is_the_exact_mixture():
         np.testing.assert_allclose(track.P[run, 0], covariance, rtol=1e-9, atol=1e-12)
 
 
+def test_where_nothing_is_measured_only_the_models_switch():
+    holes = Z.copy()
+    holes[:, 2:5] = np.nan
+    track = imm(holes, F, Q, H, R, SWITCH, x0, P0)
+    for k in (2, 3, 4):
+        np.testing.assert_allclose(track.mode[:, k], track.mode[:, k - 1] @ SWITCH, rtol=1e-12)
+
+
+def test_gaps_and_uneven_times_are_those_of_the_kalman_filter():
+    steps = np.array([0.5, 1.5, 0.2, 0.5, 0.5, 3.0, 0.5, 0.5])
+    moves = np.stack([ncv_transition(T, dim=1) for T in steps])
+    noises = np.stack([wna_process_noise(T, 0.3, dim=1) for T in steps])
+    two, noise = np.array([[1.0, 0.0], [0.3, 1.0]]), np.diag([0.3, 0.5])
+    z = np.random.default_rng(18).standard_normal((3, K, 2))
+    z[0, 1, 0] = z[:, 3, 1] = z[1, 5] = np.nan
+    alone = kf(z, moves, noises, two, noise, x0, P0)
+    for M, transition in ((1, [[1.0]]), (2, SWITCH)):
+        models = [np.repeat(value[:, None], M, axis=1) for value in (moves, noises)]
+        track = imm(z, *models, two, noise, transition, x0, P0)
+        np.testing.assert_allclose(track.x, alone.x, rtol=1e-11, atol=1e-12)
+        np.testing.assert_allclose(track.P, alone.P, rtol=1e-10, atol=1e-12)
+
+
+def test_a_component_that_is_missing_speaks_for_no_model():
+    """The likelihood of what is there, as in the first step of the exact mixture."""
+    two, noise = np.array([[1.0, 0.0], [0.3, 1.0]]), np.array([[0.3, 0.1], [0.1, 0.5]])
+    track = imm([[0.4, np.nan]], F, Q, two, noise, SWITCH, x0, P0, [0.3, 0.7])
+    few = imm([[0.4]], F, Q, two[:1], noise[:1, :1], SWITCH, x0, P0, [0.3, 0.7])
+    np.testing.assert_allclose(track.mode, few.mode, rtol=1e-12)
+    np.testing.assert_allclose(track.x, few.x, rtol=1e-12)
+
+
 def test_a_model_that_cannot_be_reached_changes_nothing():
     track = imm(Z, F, Q, H, R, [[1.0, 0.0], [1.0, 0.0]], x0, P0)
     alone = kf(Z, F1, Q1, H, R, x0, P0)

@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import chi2, multivariate_normal
 
 from dopplerlib import chi2_interval, kf, kf_predict, kf_update
+from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
 
 K, n, m = 7, 4, 2
 
@@ -241,3 +242,60 @@ def test_runs_that_share_their_first_covariance_are_filtered_as_if_each_had_its_
         ours, theirs = getattr(together, name), getattr(each, name)
         assert ours.shape == theirs.shape
         np.testing.assert_allclose(ours, theirs, rtol=1e-13, atol=1e-15)
+
+
+def test_a_component_that_is_missing_is_a_row_that_is_missing():
+    """Filtered sample by sample with the rows that are there; two of the runs miss the same."""
+    F, Q, H, R, x0, P0 = linear_model(13)
+    z = np.random.default_rng(14).standard_normal((3, K, m))
+    z[:, 1, 0] = z[:, 3] = z[1, 4, 1] = np.nan
+    for runs in (z, z[[0, 2]]):  # covariances of their own, and shared
+        track = kf(runs, F, Q, H, R, x0, P0)
+        there = ~np.isnan(runs)
+        np.testing.assert_array_equal(track.updated, there.any(axis=-1))
+        np.testing.assert_array_equal(np.isnan(track.innovation), ~there)
+        np.testing.assert_array_equal(np.isnan(track.nis), ~there.any(axis=-1))
+        for run, record in enumerate(runs):
+            x, P = x0, P0
+            for k, row in enumerate(there[run]):
+                x, P = kf_predict(x, P, F, Q)
+                np.testing.assert_allclose(track.S[run, k], H @ P @ H.T + R, rtol=1e-10)
+                x, P, nu, S = kf_update(x, P, record[k, row], H[row], R[row][:, row])
+                np.testing.assert_allclose(track.x[run, k], x, rtol=1e-11, atol=1e-12)
+                np.testing.assert_allclose(track.P[run, k], P, rtol=1e-11, atol=1e-12)
+                if row.any():
+                    expected = nu @ np.linalg.solve(S, nu)
+                    np.testing.assert_allclose(track.nis[run, k], expected, rtol=1e-9)
+
+
+def test_uneven_times_are_even_ones_with_samples_that_are_missing():
+    """White acceleration adds up over intervals exactly, so that a gap is one longer interval."""
+    kept = [0, 1, 4, 5, 11]
+    z = np.full((12, 1), np.nan)
+    z[kept] = np.random.default_rng(15).standard_normal((5, 1))
+    H, R, start = np.eye(1, 2), [[0.1]], ([0.0, 1.0], np.eye(2))
+    even = kf(z, ncv_transition(0.1, dim=1), wna_process_noise(0.1, 2.0, dim=1), H, R, *start)
+    steps = 0.1 * np.diff(kept, prepend=-1)
+    F = np.stack([ncv_transition(T, dim=1) for T in steps])
+    Q = np.stack([wna_process_noise(T, 2.0, dim=1) for T in steps])
+    track = kf(z[kept], F, Q, H, R, *start)
+    np.testing.assert_allclose(track.x, even.x[kept], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(track.P, even.P[kept], rtol=0, atol=1e-13)
+    together = kf(np.stack([z[kept]] * 2), F, Q, H, R, *start)
+    np.testing.assert_allclose(together.x[1], track.x, rtol=0, atol=1e-13)
+
+
+def test_one_matrix_means_the_same_for_all_samples():
+    model = linear_model()
+    z = np.random.default_rng(16).standard_normal((K, m))
+    F, Q, *rest = model
+    each = kf(z, np.stack([F] * K), np.stack([Q] * K), *rest)
+    np.testing.assert_array_equal(each.x, kf(z, *model).x)
+    np.testing.assert_array_equal(each.P, kf(z, *model).P)
+
+
+def test_a_prediction_that_overflows_names_the_arguments():
+    with pytest.raises(ValueError, match=r"^x, P, F, Q must keep the estimates within .* got inf"):
+        kf_predict([1e200], [[1.0]], [[1e200]], [[1.0]])
+    with pytest.raises(ValueError, match=r"^F, Q, H, R, x0, P0, z must keep .* at index"):
+        kf(np.zeros((9, 1)), [[1e99]], [[1.0]], [[0.0]], [[1.0]], [1.0], [[1.0]])

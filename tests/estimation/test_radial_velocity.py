@@ -102,8 +102,18 @@ def test_leading_axes_that_do_not_fit_are_named():
 
 @pytest.mark.parametrize(
     ("x", "message"),
-    [([0.0, 1.0], "x must not have a position of zero"), ([1.0, 1.0, 1.0], "x must hold pos")],
+    [([0.0, 1.0], r"x must have a position .* got \[0.0\]"), ([1.0, 1.0, 1.0], "x must hold pos")],
 )
 def test_a_state_without_a_direction_is_refused(x, message):
     with pytest.raises(ValueError, match=message):
         radial_velocity_terms(x, np.eye(len(x)), 0.1)
+
+
+def test_where_no_velocity_is_measured_the_state_stays():
+    z = np.array([0.1, np.nan])
+    x, Pu, innovation, S = radial_velocity_update(X, P, z, 0.1)
+    np.testing.assert_array_equal(x[1], X)
+    np.testing.assert_array_equal(Pu[1], P)
+    assert np.isnan(innovation[1, 0]) and np.isfinite(S).all()
+    alone = radial_velocity_update(X, P, 0.1, 0.1)
+    np.testing.assert_allclose(x[0], alone[0], rtol=1e-12)

@@ -71,6 +71,22 @@ def test_one_covariance_serves_all_runs():
     assert P_shared.shape == (K, n, n)
 
 
+def test_uneven_times_are_even_ones_with_samples_that_are_missing():
+    """White acceleration adds up over intervals exactly, so that a gap is one longer interval."""
+    kept = [0, 1, 4, 5, 11]
+    z = np.full((3, K, 1), np.nan)
+    z[:, kept] = np.random.default_rng(7).normal(size=(3, 5, 1))
+    full = kf(z, F, Q, H, R, x0, P0)
+    steps = 0.5 * np.diff(kept, prepend=-1)
+    moves = np.stack([ncv_transition(T, dim=1) for T in steps])
+    noises = np.stack([wna_process_noise(T, 0.3, dim=1) for T in steps])
+    track = kf(z[:, kept], moves, noises, H, R, x0, P0)
+    x, P = rts_smooth(track.x, track.P, moves, noises)
+    even_x, even_P = rts_smooth(full.x, full.P, F, Q)
+    np.testing.assert_allclose(x, even_x[:, kept], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(P, even_P[:, kept], rtol=0, atol=1e-12)
+
+
 def test_shapes_that_do_not_fit_are_refused():
     x, P = np.zeros((K, n)), np.stack([np.eye(n)] * K)
     with pytest.raises(ValueError, match="P must have shape"):

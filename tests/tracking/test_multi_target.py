@@ -128,6 +128,31 @@ def test_a_target_that_passes_behind_the_radar_keeps_its_track():
     np.testing.assert_allclose(turned.x, -seen.x, rtol=1e-9, atol=1e-9)
 
 
+def test_a_detection_with_a_nan_is_not_there_and_the_others_keep_their_numbers():
+    rng = np.random.default_rng(37)
+    z = positions(rng, 0.0, 1.0)
+    padded = run([[[np.nan], [one], [np.nan]] for one in z], probability=0.999999)
+    plain = run([[[one]] for one in z], probability=0.999999)
+    assert len(padded) == len(plain) == 1
+    np.testing.assert_array_equal(padded[0].x, plain[0].x)
+    assert (padded[0].detection == 1).all()
+    assert run([[[np.nan]]] * 3) == []
+
+
+def test_an_assignment_that_cannot_be_is_refused():
+    scans = [np.array([[0.0], [50.0]])] * 2
+    for value in ([99, -1], [0, 0], [0.0, 1.0], [0], "01", [[0, 1]], [-2, 0]):
+        with pytest.raises(
+            ValueError, match=r"^assign\(cost, gate\) must be whole numbers .* got "
+        ):
+            run(scans, assign=lambda cost, gate, value=value: value)
+    for pair in (3, np.zeros((2, 2))[:1], [1, 2, 3]):
+        with pytest.raises(ValueError, match=r"^start\(z\) must be a pair"):
+            track_scans(scans, F, Q, lambda x: x @ H.T, lambda x: H, R, lambda z: pair, MANAGER)  # noqa: B023
+    with pytest.raises(ValueError, match=r"^manager must be a TrackManager, got 'x'"):
+        run(scans, manager="x")
+
+
 def test_a_scan_of_another_kind_is_refused():
     with pytest.raises(ValueError, match=r"scans\[1\] must have shape"):
         run([np.zeros((1, 1)), np.zeros((1, 2))])

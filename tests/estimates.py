@@ -1,0 +1,145 @@
+"""One valid call of every public function of estimation and tracking that takes numbers.
+
+Tests of what all of them share (`tests/test_edges.py`) change one argument of such a call.
+"""
+
+import inspect
+from importlib import import_module
+from pkgutil import iter_modules
+
+import numpy as np
+
+from dopplerlib import RadarArray, TrackManager, doppler_shift, kf
+from dopplerlib.estimation import (
+    extended_kalman,
+    extended_update,
+    imm,
+    linear_kalman,
+    maximum_likelihood,
+    radial_velocity,
+    smoother,
+    steady_state,
+    variable_projection,
+)
+from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.tracking import association, bilateration, fusion, gates, multi_target, pda
+
+K, n, m = 4, 2, 1
+F, Q = ncv_transition(0.5, dim=1), wna_process_noise(0.5, 0.3, dim=1)
+H, R = np.array([[1.0, 0.2]]), np.array([[0.4]])
+x, P = np.array([1.0, -0.5]), np.array([[2.0, 0.3], [0.3, 1.0]])
+z = np.array([[0.5], [0.1], [-0.4], [0.2]])
+array, state = RadarArray.linear(5, 0.4), [0.5, 0.2, 0.0, -1.0, 0.5, 0.0]
+shifts = doppler_shift(state, array) + 0.1 * np.arange(20.0).reshape(4, 5)
+box = [0.1, -1, 0, -2, -2, 0], [2, 1, 0, 2, 2, 0]
+two = {"x1": x, "P1": P, "x2": x + 0.1, "P2": P.T * 2}
+nonlinear = {"h": lambda x: x @ H.T, "H": lambda x: H}
+track = kf(z, F, Q, H, R, x, P)
+
+
+def start(z):
+    return np.concatenate([z, 0 * z], axis=-1), np.broadcast_to(P, (len(z), n, n))
+
+
+CALLS = {
+    linear_kalman.kf_predict: {"x": x, "P": P, "F": F, "Q": Q},
+    linear_kalman.kf_update: {"x": x, "P": P, "z": z[0], "H": H, "R": R},
+    linear_kalman.kf: {"z": z, "F": F, "Q": Q, "H": H, "R": R, "x0": x, "P0": P},
+    extended_update.ekf_innovation: {"x": x, "P": P, "z": z[0], "R": R, "wrap": (0,)} | nonlinear,
+    extended_update.ekf_update: {"x": x, "P": P, "z": z[0], "R": R, "wrap": (0,), "accept": True}
+    | nonlinear,
+    imm.imm: {
+        "z": z, "F": [F, F], "Q": [Q, 4 * Q], "H": H, "R": R, "x0": x, "P0": P,
+        "transition": [[0.9, 0.1], [0.2, 0.8]], "mode0": [0.5, 0.5],
+    },
+    smoother.rts_smooth: {"x": track.x, "P": track.P, "F": F, "Q": Q},
+    steady_state.steady_state_gain: {"F": F, "Q": Q, "H": H, "R": R},
+    steady_state.steady_state_lag: {"F": F, "H": H, "K": [[0.5], [0.4]], "push": [0.1, 0.2]},
+    radial_velocity.radial_velocity_terms: {"x": x, "P": P, "sigma": 0.1},
+    radial_velocity.radial_velocity_update: {"x": x, "P": P, "z": 0.3, "sigma": 0.1},
+    extended_kalman.ekf: {
+        "z": shifts, "array": array, "x0": state, "P0": 0.01 * np.eye(6), "T": 0.001,
+        "sigma_p": 0.4, "sigma_f": 0.4, "keep": ("P", "S", "innovation"), "workers": 1,
+    },
+    extended_kalman.gate_bounds: {"gate": "upper", "sensors": 6, "confidence": 0.9},
+    maximum_likelihood.ml_start: {
+        "z": shifts, "array": array, "sigma_f": 0.1, "T": 0.001, "box": box, "workers": 1,
+    },
+    variable_projection.best_velocity: {
+        "z": shifts[0], "array": array, "sigma_f": 0.1, "p": state[:3], "in_plane": True,
+    },
+    association.nearest_neighbor: {"distance": [1.0, 2.0], "accept": [False, True]},
+    association.greedy_assign: {"cost": [[1.0, 2.0], [2.0, 8.0]], "gate": 5.0},
+    association.gnn_assign: {"cost": [[1.0, 2.0], [2.0, 8.0]], "gate": 5.0},
+    bilateration.bilaterate: {"d1": 2.0, "d2": 2.0, "baseline": 1.0},
+    fusion.fuse_state_vectors: two | {"P12": 0.1 * np.eye(n)},
+    fusion.cross_covariance_step: {
+        "P12": P, "F": F, "Q": Q, "K1": [[0.5], [0.1]], "H1": H, "K2": [[0.4], [0.2]], "H2": H,
+    },
+    fusion.covariance_intersection: two | {"w": 0.5},
+    fusion.fuse_measurements: {"z1": x, "R1": P, "z2": x + 0.1, "R2": 2 * P},
+    gates.chi2_gate: {"nis": [1.0, 9.0], "m": 2, "probability": 0.95},
+    gates.fixed_box_gate: {"innovation": x, "half_widths": [0.5, 1.0]},
+    multi_target.track_scans: {
+        "scans": [z[:2], z[1:2], z[2:]], "F": F, "Q": Q, "R": R, "start": start,
+        "manager": TrackManager(2, 3, 3), "probability": 0.99, "wrap": (0,),
+    } | nonlinear,
+    pda.pda_update: {
+        "x": x, "P": P, "z": z, "H": H, "R": R, "detection": 0.9, "density": 0.1, "gate": 0.99,
+    },
+}  # fmt: skip
+
+# Arguments by what they are. An argument of these names is of this kind in every function.
+COVARIANCES = ("P", "P0", "P1", "P2", "Q", "R", "R1", "R2")
+ITERABLES = ("wrap", "scans", "keep", "box")
+BOOLEANS = ("accept", "in_plane")
+NOT_NUMBERS = ("array", "start", "manager", "h", "gate", *ITERABLES, *BOOLEANS)
+
+
+def call(function, **changed):
+    """Return what the valid call gives with some arguments changed, or left out if None."""
+    arguments = CALLS[function] | changed
+    return function(**{name: value for name, value in arguments.items() if value is not None})
+
+
+def results(value):
+    """Return the arrays and numbers of a result, of records and lists of them as well."""
+    if isinstance(value, (list, tuple)):
+        return [one for part in value for one in results(part)]
+    if hasattr(value, "__dataclass_fields__"):
+        return results([getattr(value, name) for name in value.__dataclass_fields__])
+    return [] if value is None else [np.asarray(value)]
+
+
+def public_functions():
+    """Return every function of estimation and tracking whose module and own name are public."""
+    found = []
+    for package in ("estimation", "tracking"):
+        folder = import_module(f"dopplerlib.{package}")
+        for module in iter_modules(folder.__path__, f"{folder.__name__}."):
+            name = module.name.rpartition(".")[2]
+            if not name.startswith("_") and name != "gaussian":
+                members = vars(import_module(module.name)).values()
+                found += [
+                    value
+                    for value in members
+                    if inspect.isfunction(value)
+                    and value.__module__ == module.name
+                    and not value.__name__.startswith("_")
+                ]
+    return found
+
+
+def with_argument(names):
+    """Return pairs (function, argument) of all calls that have an argument of these names."""
+    return [
+        (function, name)
+        for function, arguments in CALLS.items()
+        for name in arguments
+        if name in names and not callable(arguments[name])
+    ]
+
+
+def label(value):
+    """Return what pytest calls a parameter."""
+    return value.__name__ if callable(value) else None
