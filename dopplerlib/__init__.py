@@ -39,6 +39,7 @@ _HOME = {
     "ring_family_direction": "model.ambiguity",
     "fisher_information": "model.information",
     "crlb": "evaluation.bounds",
+    "Table": "evaluation.table",
     "nees": "evaluation.consistency",
     "nis": "evaluation.consistency",
     "chi2_interval": "evaluation.consistency",
