@@ -70,6 +70,10 @@ notebooks: $(VENV)/.ready  ## execute the chapters in place
 notebooks-check: $(VENV)/.ready  ## execute the chapters again and compare every byte
 	$(PY) -m tools.notebooks --check
 
+.PHONY: text
+text: $(VENV)/.ready  ## write the chapters as text, in which a changed sentence is a changed line
+	$(PY) -m tools.notebooks --text
+
 .PHONY: record
 record: $(VENV)/.ready  ## execute the chapters again and write the page on reproducibility
 	$(PY) -m tools.record

@@ -18,6 +18,7 @@ from nbclient.exceptions import CellExecutionError
 
 from dopplerlib._files import write_text
 from tools.command import parser, start
+from tools.prose import as_text, text_path
 
 ROOT = Path(__file__).resolve().parent.parent
 FIXED = {
@@ -147,9 +148,14 @@ def main(argv=None):
     """Return whether notebooks failed or, with --check, differ."""
     options = parser(__doc__)
     options.add_argument("--check", action="store_true", help="compare only, write nothing")
+    options.add_argument("--text", action="store_true", help="only write book/text again")
     options.add_argument("--timeout", type=int, default=300, help="seconds a cell may take")
     options.add_argument("notebooks", nargs="*", type=Path, help="default: all of the book")
     chosen = options.parse_args(argv)
+    if chosen.text:
+        for path in chosen.notebooks or chapters():
+            write_beside(path, path.read_text(encoding="utf8"))
+        return 0
     bad = False
     for path, new, _ in executed(chosen.notebooks or chapters(), chosen.timeout):
         if new is None:
@@ -161,7 +167,15 @@ def main(argv=None):
                 print(f"{path}: {line}")
         else:
             write_text(path, new)
+            write_beside(path, new)
     return int(bad)
+
+
+def write_beside(path, notebook):
+    """Write the text that stands beside a chapter for review."""
+    text = text_path(path)
+    text.parent.mkdir(exist_ok=True)
+    write_text(text, as_text(json.loads(notebook)))
 
 
 if __name__ == "__main__":

@@ -70,6 +70,11 @@ def _broken(block):
     return lines
 
 
+def text_path(chapter):
+    """Return where the text of a chapter stands."""
+    return chapter.parent / "text" / f"{chapter.stem}.md"
+
+
 def as_text(notebook):
     """Return a chapter as text: its prose, its code, and what the code printed."""
     blocks = []

@@ -12,7 +12,10 @@ from tools.notebooks import chapters
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
 CHAPTERS = chapters(BOOK)
-PAGES = CHAPTERS + sorted(p for p in BOOK.rglob("*.md") if "_build" not in p.parts)
+NO_PAGES = ("_build", "text")  # what is built, and the chapters as text
+PAGES = CHAPTERS + sorted(
+    p for p in BOOK.rglob("*.md") if p.relative_to(BOOK).parts[0] not in NO_PAGES
+)
 LONGEST_CELL = 15  # lines: what does not fit belongs in the library
 LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 PICTURE = re.compile(r"^(`{3,}|:{3,})\{(?:glue:)?(?:figure|image)\}(.*?)^\1", re.M | re.S)

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from tools.notebooks import chapters
-from tools.prose import as_text, sentences
+from tools.prose import as_text, sentences, text_path
 
 
 @pytest.mark.parametrize(
@@ -65,3 +65,14 @@ def test_the_text_of_a_chapter_has_its_prose_code_and_results_and_no_picture():
     assert as_text({"cells": cells}) == (
         "One.\nTwo.\n\n```python\n# cell sum\nprint(0.4)\n```\n\n```text\n0.4\n7\n```\n"
     )
+
+
+@pytest.mark.parametrize("chapter", chapters(), ids=lambda path: path.stem)
+def test_the_text_beside_a_chapter_is_that_of_the_chapter(chapter):
+    text = as_text(json.loads(chapter.read_text(encoding="utf8")))
+    assert text_path(chapter).read_text(encoding="utf8") == text, "run: make text"
+
+
+def test_no_text_is_left_of_a_chapter_that_is_gone():
+    folder = text_path(chapters()[0]).parent
+    assert sorted(folder.iterdir()) == sorted(text_path(path) for path in chapters())
