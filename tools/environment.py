@@ -17,8 +17,7 @@ from tools.alone import alone
 from tools.command import child, parser, start
 
 ROOT = Path(__file__).resolve().parent.parent
-READY = ".ready"
-INSTALL = ["-m", "pip", "install", "--quiet", "--no-deps"]
+READY, HELD = ".ready", ".lock"
 MADE_OF = ("build-system", "project", "tool.setuptools")  # of pyproject.toml: not how it is tested
 
 
@@ -28,16 +27,17 @@ def digest(content):
 
 
 def wanted(lock, root=ROOT):
-    """Return what an environment made now would be, by the words in which a difference is told."""
+    """Return what an environment made now would be of, by the words in which we tell it."""
     settings = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
     tables = settings | {f"tool.{name}": table for name, table in settings["tool"].items()}
     made_of = json.dumps([tables.get(name) for name in MADE_OF], sort_keys=True)
+    made_of += (root / "setup.py").read_text(encoding="utf-8")
     return {
         "checkout": str(root),
         "Python": sys.version,
         "Python's folder": os.path.realpath(sys.base_prefix),
         "lock": f"{lock.name} {digest(lock.read_bytes())}",
-        "pyproject.toml": digest(made_of.encode()),
+        "needs": f"pyproject.toml {digest(made_of.encode())}",
     }
 
 
@@ -58,32 +58,33 @@ def reasons(folder, want):
     ]
 
 
-def make(folder, lock, want, file):
-    """Make the environment anew; `file` is the lock, which outlives us with the child at work."""
-    (folder / READY).unlink(missing_ok=True)
-    for path in folder.iterdir():
-        if path.name != ".lock":
-            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-    python = [folder / "bin" / "python"]
+def steps(folder, lock):
+    """Return the commands that fill a folder, by what they do."""
+    python, install = folder / "bin" / "python", ["-m", "pip", "install", "--quiet", "--no-deps"]
     # Byte code is left to the first import: compiling all of it up front doubles the time, and
     # most of it is never read.
     exact = ["--no-compile", "--require-hashes", "--only-binary", ":all:", "-r", lock]
-    steps = {
+    return {
         "an empty environment": [sys.executable, "-m", "venv", folder],
-        f"what {lock.name} holds, a minute or so": [*python, *INSTALL, *exact],
-        "the library": [*python, *INSTALL, "--no-build-isolation", "--no-index", "-e", ROOT],
+        f"what {lock.name} holds, a minute or so": [python, *install, *exact],
+        "the library": [python, *install, "--no-build-isolation", "--no-index", "-e", ROOT],
     }
+
+
+def make(folder, lock, held):
+    """Make an environment anew; `held` goes to the commands, so that nobody else begins before."""
+    for path in folder.iterdir():
+        if path.name != HELD:
+            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
     temporary = folder / "tmp"  # what a killed pip leaves goes with the folder
     temporary.mkdir()
-    for number, (name, command) in enumerate(steps.items(), start=1):
-        print(f"{folder.name}: {number} of {len(steps)}, {name}", file=sys.stderr, flush=True)
-        env = os.environ | {"TMPDIR": str(temporary)}
-        with child(command, env=env, pass_fds=[file]) as step:
+    env = os.environ | {"TMPDIR": str(temporary)}
+    commands = steps(folder, lock)
+    for number, (name, command) in enumerate(commands.items(), start=1):
+        print(f"{folder.name}: {number} of {len(commands)}, {name}", file=sys.stderr, flush=True)
+        with child(command, env=env, pass_fds=[held]) as step:
             if step.wait():
                 return step.returncode
-    unfinished = folder / f"{READY}.tmp"
-    unfinished.write_text(json.dumps(want, indent=1) + "\n", encoding="utf-8")
-    unfinished.replace(folder / READY)
     return 0
 
 
@@ -97,13 +98,19 @@ def main(argv=None):
     want = wanted(lock)
     if not reasons(folder, want):
         return 0
-    with alone(folder / ".lock", folder.name) as file:
-        found = reasons(folder, want)  # again: whoever had the lock has made it
+    with alone(folder / HELD, folder.name) as held:
+        found = reasons(folder, want)  # again: whoever was here before has made it
         if not found:
             return 0
+        (folder / READY).unlink(missing_ok=True)
         for reason in found:
             print(f"{folder.name} is made anew: {reason}", file=sys.stderr)
-        return make(folder, lock, want, file)
+        code = make(folder, lock, held)
+        if not code:
+            unfinished = folder / f"{READY}.tmp"
+            unfinished.write_text(json.dumps(want, indent=1) + "\n", encoding="utf-8")
+            unfinished.replace(folder / READY)
+        return code
 
 
 if __name__ == "__main__":
