@@ -24,6 +24,8 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport MPLBACKEND JUPYTER_PATH PYTHONHOME PYTHONOPTIMIZE PYTHONPATH PYTHONSAFEPATH
+# Without byte code every kernel compiles what it imports: five seconds for each chapter.
+unexport PYTHONDONTWRITEBYTECODE
 
 # $(call environment,folder,lock): an environment with what the lock holds, and the library itself;
 # made anew if it is not that of this place, this Python and this lock.
@@ -44,13 +46,19 @@ book: $(VENV)/.ready  ## build the book: book/_build/html/index.html
 
 .PHONY: test
 test: lint  ## check everything: style, book without warnings, tests, doctests, notebooks
-	$(MAKE) --jobs=2 book compile
-	$(PY) -m pytest -n logical --maxprocesses 4 --dist loadfile
+	$(MAKE) --jobs=2 book tests
 
-# Building the book keeps one processor busy; meanwhile another one does what would hold up the tests.
+.PHONY: tests
+tests: compile  ## run the tests, the examples in docstrings, and the chapters
+	$(PY) -m pytest -n logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
+
 .PHONY: compile
 compile: $(VENV)/.ready  ## compile all that numba compiles, once for every process that follows
 	$(PY) -m tools.compile
+
+.PHONY: test-matrix
+test-matrix:  ## test the library with every Python that is found, and with the oldest packages
+	$(PYTHON) -m tools.matrix $(PYTHONS)
 
 .PHONY: lint
 lint: $(VENV)/.ready  ## check style and formatting
@@ -119,12 +127,16 @@ bench-iq: $(VENV)/.ready  ## time from IQ to Doppler: a second of six sensors
 	$(PY) benchmarks/iq.py
 
 .PHONY: lock
-lock: $(if $(filter .venv-uv/%,$(UV)),.venv-uv/.ready)  ## renew environment.lock and benchmarks/requirements.lock
+lock: $(if $(filter .venv-uv/%,$(UV)),.venv-uv/.ready)  ## renew all lock files
 	@mkdir -p .venv-uv
 	$(UV) pip compile $(LOCK_OPTIONS) requirements.in -o .venv-uv/environment.lock
 	$(UV) pip compile $(LOCK_OPTIONS) -c .venv-uv/environment.lock benchmarks/requirements.in \
 		-o .venv-uv/requirements.lock
-	mv -f .venv-uv/environment.lock . && mv -f .venv-uv/requirements.lock benchmarks/
+	grep -E '^($(TESTED_WITH))==' .venv-uv/environment.lock | tr -d '\\' > .venv-uv/tests.in
+	$(UV) pip compile $(LOCK_OPTIONS) --resolution lowest-direct --all-extras pyproject.toml \
+		.venv-uv/tests.in -o .venv-uv/minimum.lock
+	cd .venv-uv && mv -f environment.lock .. && mv -f requirements.lock ../benchmarks/ && \
+		mv -f minimum.lock ../tests/
 
 .PHONY: clean
 clean:  ## remove everything that the other targets made
@@ -135,6 +147,9 @@ clean:  ## remove everything that the other targets made
 # One lock for every platform and every Python from 3.11 on, without the address of an index.
 LOCK_OPTIONS := --quiet --upgrade --universal --fork-strategy fewest --python-version 3.11 \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
+
+# The packages of the tests themselves are no question of the oldest ones.
+TESTED_WITH := hypothesis|ipykernel|nbformat|nbval|pytest|pytest-xdist|pyyaml|setuptools
 
 # Looked at every time: what they were made of is not told by the time of a file.
 .PHONY: FORCE

@@ -1,10 +1,43 @@
-"""What holds for every test: no window opens, and a property is tried on the same examples."""
+"""What holds for every test: no window opens, and a property is tried on the same examples.
+
+And in which order they run: a long file that comes last would be waited for.
+"""
+
+from pathlib import Path
 
 import matplotlib
+import pytest
 from hypothesis import settings
+
+from tools.alone import alone
+
+BUILT = Path(__file__).resolve().parents[1] / "book" / "_build"
 
 matplotlib.use("agg")
 
 # No deadline: the first call of a kernel compiles it.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
 settings.load_profile("repeatable")
+
+
+@pytest.fixture(scope="session")
+def built_book():
+    """Return the folder of the book's pages, once nobody is building them."""
+    if not (BUILT / ".lock").exists():
+        pytest.skip("the book has not been built: make book")
+    with alone(BUILT / ".lock", "the book"):
+        return BUILT / "html"
+
+
+def pytest_collection_modifyitems(items):
+    """Begin with the long files, and end with those that look at the built book."""
+    last = {item.path for item in items if "built_book" in getattr(item, "fixturenames", ())}
+
+    def rank(item):
+        if item.path in last:
+            return 3
+        if "wheel" in item.path.parts:
+            return 0
+        return 1 if item.path.suffix == ".ipynb" else 2
+
+    items.sort(key=rank)
