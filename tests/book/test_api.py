@@ -1,6 +1,7 @@
 """Every public name of the library stands on the reference page, once."""
 
 import ast
+import html
 import inspect
 import re
 from importlib import import_module
@@ -21,6 +22,9 @@ MODULES = sorted(
     for path in (ROOT / "dopplerlib" / package).rglob("*.py")
     if not path.name.startswith("_")
 )
+
+
+BUILT = ROOT / "book" / "_build" / "html" / "api.html"
 
 
 def directives(kind):
@@ -84,3 +88,36 @@ def test_a_result_that_is_not_imported_from_the_top_is_shown_as_well():
 
 def test_the_page_can_be_referred_to():
     assert PAGE.startswith("(sec-api)=\n# ")
+
+
+def visible_names(page):
+    """Return the kind and the visible name of every entry of a built page, in its order."""
+    entries = re.findall(r'<dl class="py (\w+)">\s*<dt [^>]*>(.*?)</dt>', page, flags=re.DOTALL)
+    found = []
+    for kind, signature in entries:
+        text = html.unescape(re.sub(r"<[^>]*>", "", signature)).strip()
+        name = re.match(r"(?:(?:class|classmethod|static|property) )*([\w.]+)", text)[1]
+        found.append((kind, name))
+    return found
+
+
+@pytest.mark.skipif(not BUILT.exists(), reason="the book is not built")
+def test_every_entry_of_the_built_page_can_be_imported_as_it_stands_there():
+    entries, owner = visible_names(BUILT.read_text(encoding="utf-8")), None
+    assert len(entries) >= len(directives("autofunction") + directives("autoclass")) + len(MODULES)
+    for kind, name in entries:
+        if kind in ("method", "property", "attribute"):  # below the class that it belongs to
+            assert hasattr(owner, name) or name in owner.__dataclass_fields__
+            continue
+        module, _, last = name.rpartition(".")
+        value = getattr(import_module(module), last)
+        assert value.__name__ == last
+        if kind == "class":
+            owner = value
+
+
+def test_an_entry_without_its_module_cannot():
+    page = '<dl class="py function">\n<dt class="sig" id="a.b"><span>b</span>(<em>x</em>)</dt>'
+    assert visible_names(page) == [("function", "b")]
+    with pytest.raises(ValueError, match="Empty module name"):
+        import_module(visible_names(page)[0][1].rpartition(".")[0])
