@@ -394,3 +394,16 @@ def _check_all(name, wanted, array, good):
 def _short(value, most=100):
     text = repr(value)
     return text if len(text) <= most else text[:most] + " ..."
+
+
+def text(name, value, least=0):
+    """Return `value`, or raise if it is not a text of at least `least` characters."""
+    if not isinstance(value, str) or len(value) < least:
+        wanted = "a text" if not least else "a text that is not empty"
+        raise ValueError(f"{name} must be {wanted}, got {_short(value)}")
+    return value
+
+
+def records(name, values, kind):
+    """Return `values`, any iterable of records of the class `kind`, as a tuple, or raise."""
+    return tuple(instance(name, value, kind) for value in iterable(name, values))

@@ -14,6 +14,7 @@ ORDER = [
     "_checks",
     "_compile",
     "_progress",
+    "_toml",
     "_files",
     "kernels",
     "model",

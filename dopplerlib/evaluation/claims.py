@@ -1,8 +1,6 @@
 """The claims of a document, one by one."""
 
-import tomllib
-from dataclasses import fields
-
+from .. import _checks, _toml
 from .._records import record
 
 VERDICTS = ("reproduced", "typical", "atypical", "contradicted", "underdetermined")
@@ -64,7 +62,7 @@ def read_claims(path):
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or Traversable
         A ``claims.toml``: a list of tables ``[[claim]]`` with the attributes of `Claim`.
 
     Returns
@@ -74,42 +72,36 @@ def read_claims(path):
     Raises
     ------
     ValueError
-        If a claim lacks an entry, has one that is unknown or of the wrong kind, or its name is
-        used twice.
+        If the file cannot be read or is not TOML, a claim lacks an entry, has one that is unknown
+        or of the wrong kind, or its name is used twice. The message begins with the file's name.
     """
-    with open(path, "rb") as file:
-        tables = tomllib.load(file).get("claim", [])
-    claims = tuple(_claim(table, path) for table in tables)
-    names = [claim.id for claim in claims]
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"{path}: the id of a claim must be unique, got {name!r} twice")
-    if not claims:
-        raise ValueError(f"{path} must hold a list of [[claim]], got none")
-    return claims
+    with _toml.tables(path) as file:
+        return _toml.entries(file, "claim", Claim, check_claim)
 
 
-def _claim(table, path):
-    name = table.get("id", "without an id")
-    known = {field.name for field in fields(Claim)}
-    for key in table:
-        if key not in known:
-            raise ValueError(f"{path}: claim {name!r} has an unknown entry {key!r}")
-    try:
-        claim = Claim(**table)
-    except TypeError as error:
-        raise ValueError(f"{path}: claim {name!r} is incomplete: {error}") from None
-    for key, choices in (("kind", KINDS), ("verdict", VERDICTS)):
-        if getattr(claim, key) not in choices:
+def check_claim(where, claim):
+    """Raise unless the fields of a claim are of the right kinds and fit each other."""
+    for name in ("id", "where", "statement", "page", "cell", "test"):
+        _checks.text(f"{name} of {where}", getattr(claim, name), least=1)
+    for name in ("unit", "note"):
+        _checks.text(f"{name} of {where}", getattr(claim, name))
+    for name, choices in (("kind", KINDS), ("verdict", VERDICTS)):
+        _checks.one_of(f"{name} of {where}", getattr(claim, name), choices)
+    if claim.published is not None:
+        published = _checks.finite(f"published of {where}", claim.published)
+        if published.ndim > (claim.kind == "deterministic") or not published.size:
             raise ValueError(
-                f"{path}: {key} of claim {name!r} must be one of {', '.join(choices)}, "
-                f"got {getattr(claim, key)!r}"
+                f"published of {where} must be one number, or a list of them for a deterministic "
+                f"claim, got an array of shape {published.shape}"
             )
-    if (claim.relation in RELATIONS) != (claim.kind == "relation"):
+    if _checks.one_number(f"rounding of {where}", claim.rounding) < 0:
+        raise ValueError(f"rounding of {where} must not be negative, got {claim.rounding}")
+    if claim.kind == "relation":
+        _checks.one_of(f"relation of {where}", claim.relation, RELATIONS)
+    elif claim.relation is not None:
         raise ValueError(
-            f"{path}: relation of claim {name!r} must be one of {' '.join(RELATIONS)} for a "
-            f"relation and absent for other kinds, got {claim.relation!r}"
+            f"relation of {where} must be absent for other kinds than a relation, "
+            f"got {claim.relation!r}"
         )
     if claim.verdict in ("contradicted", "underdetermined") and not claim.note:
-        raise ValueError(f"{path}: claim {name!r} is {claim.verdict}, so it needs a note")
-    return claim
+        raise ValueError(f"note of {where} must say why it is {claim.verdict}, got none")

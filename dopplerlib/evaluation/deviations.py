@@ -1,8 +1,6 @@
 """Where a document leaves something open or contradicts itself, and what was chosen instead."""
 
-import tomllib
-from dataclasses import fields
-
+from .. import _checks, _toml
 from .._records import record
 
 KINDS = ("gap", "contradiction", "misprint")
@@ -48,9 +46,19 @@ class Deviations:
     ----------
     entries : tuple of Deviation
         As the file has them.
+
+    Raises
+    ------
+    ValueError
+        If an entry is no `Deviation`.
     """
 
     entries: tuple
+
+    def __post_init__(self):
+        """Check the fields."""
+        entries = _checks.records("entries", self.entries, Deviation)
+        object.__setattr__(self, "entries", entries)
 
     def __repr__(self):
         counts = [(kind, sum(one.kind == kind for one in self.entries)) for kind in KINDS]
@@ -67,7 +75,7 @@ def read_deviations(path):
 
     Parameters
     ----------
-    path : path-like
+    path : path-like or Traversable
         A ``deviations.toml``: a list of tables ``[[deviation]]`` with the attributes of
         `Deviation`.
 
@@ -78,31 +86,21 @@ def read_deviations(path):
     Raises
     ------
     ValueError
-        If one lacks an entry, has one that is unknown or of the wrong kind, or a name is used
-        twice.
+        If the file cannot be read or is not TOML, a deviation lacks an entry, has one that is
+        unknown or of the wrong kind, or a name is used twice. The message begins with the file's
+        name.
     """
-    with open(path, "rb") as file:
-        tables = tomllib.load(file).get("deviation", [])
-    known, entries = {field.name for field in fields(Deviation)}, []
-    for table in tables:
-        name = table.get("id", "without an id")
-        if unknown := [key for key in table if key not in known]:
-            raise ValueError(f"{path}: deviation {name!r} has an unknown entry {unknown[0]!r}")
-        try:
-            one = Deviation(**table)
-        except TypeError as error:
-            raise ValueError(f"{path}: deviation {name!r} is incomplete: {error}") from None
-        if one.kind not in KINDS:
-            raise ValueError(
-                f"{path}: kind of deviation {name!r} must be one of {', '.join(KINDS)}, "
-                f"got {one.kind!r}"
-            )
-        if name in [other.id for other in entries]:
-            raise ValueError(f"{path}: the id of a deviation must be unique, got {name!r} twice")
-        entries.append(one)
-    if not entries:
-        raise ValueError(f"{path} must hold a list of [[deviation]], got none")
-    return Deviations(tuple(entries))
+    with _toml.tables(path) as file:
+        return Deviations(_toml.entries(file, "deviation", Deviation, _check))
+
+
+def _check(where, made):
+    for name in ("id", "where", "paper", "choice", "page", "cell"):
+        _checks.text(f"{name} of {where}", getattr(made, name), least=1)
+    _checks.one_of(f"kind of {where}", made.kind, KINDS)
+    _checks.instance(f"claims of {where}", made.claims, tuple)
+    for claim in made.claims:
+        _checks.text(f"claims of {where}", claim, least=1)
 
 
 def _row(one):

@@ -2,9 +2,11 @@
 
 import numpy as np
 
+from .. import _checks
 from .._records import record
 from .intervals import mean_interval, quantile_interval, share_interval
 
+_INTERVALS = {"median": quantile_interval, "mean": mean_interval}
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -19,10 +21,26 @@ class IntervalTable:
         the share that is true.
     statistic : {"median", "mean"}
         Means are for counts, of which a median says little.
+
+    Raises
+    ------
+    ValueError
+        If there is no row, the rows do not hold the same quantities, or `statistic` is unknown.
     """
 
     rows: dict
     statistic: str = "median"
+
+    def __post_init__(self):
+        """Check the fields."""
+        _checks.one_of("statistic", self.statistic, tuple(_INTERVALS))
+        rows = _checks.instance("rows", self.rows, dict)
+        names = [list(_checks.instance("rows", one, dict)) for one in rows.values()]
+        if not names or not names[0]:
+            raise ValueError(f"rows must hold a quantity of a variant, got {rows!r}")
+        for other in names:
+            if set(other) != set(names[0]):
+                raise ValueError(f"rows must hold the same quantities, got {names[0]} and {other}")
 
     def __repr__(self):
         return f"{self.statistic}s of {len(self.rows)} variants"
@@ -35,7 +53,7 @@ class IntervalTable:
         return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
     def _cell(self, values):
-        interval = {"median": quantile_interval, "mean": mean_interval}[self.statistic]
+        interval = _INTERVALS[self.statistic]
         estimate = (share_interval if np.asarray(values).dtype == bool else interval)(values)
         return f"{_short(estimate.value)}<br>({_short(estimate.low)} to {_short(estimate.high)})"
 

@@ -18,11 +18,22 @@ class Estimate:
         Lower end of its confidence interval.
     high : float
         Upper end.
+
+    Raises
+    ------
+    ValueError
+        If one of them is no number. NaN is one, of which `judge` makes no verdict.
     """
 
     value: float
     low: float
     high: float
+
+    def __post_init__(self):
+        """Check the fields."""
+        for name in ("value", "low", "high"):
+            number = _checks.one_number(name, getattr(self, name), _checks.real)
+            object.__setattr__(self, name, number)
 
     @property
     def half_width(self):
@@ -65,10 +76,11 @@ def mean_interval(values, confidence=0.95):
     """
     from scipy.special import stdtrit
 
-    values, confidence = _runs(values, 2), _checks.probability("confidence", confidence)
+    values, confidence = _runs("values", values, 2), _checks.probability("confidence", confidence)
+    values, size = _scaled(values)
     mean = values.mean()
     half = stdtrit(len(values) - 1, (1 + confidence) / 2) * values.std(ddof=1) / len(values) ** 0.5
-    return Estimate(float(mean), float(mean - half), float(mean + half))
+    return Estimate(*(float(end) * size for end in (mean, mean - half, mean + half)))
 
 
 def rms_interval(errors, confidence=0.95):
@@ -100,8 +112,10 @@ def rms_interval(errors, confidence=0.95):
     >>> print(rms_interval([3.0, -4.0, 4.0, -3.0, 4.0, 3.0]))
     3.54 (2.91 to 4.06)
     """
-    square = mean_interval(_runs(errors, 2) ** 2, confidence)
-    return Estimate(*(max(end, 0.0) ** 0.5 for end in (square.value, square.low, square.high)))
+    errors, size = _scaled(_runs("errors", errors, 2))
+    square = mean_interval(errors**2, confidence)
+    ends = square.value, square.low, square.high
+    return Estimate(*(max(end, 0.0) ** 0.5 * size for end in ends))
 
 
 def share_interval(hits, confidence=0.95):
@@ -134,11 +148,9 @@ def share_interval(hits, confidence=0.95):
     """
     from scipy.special import betaincinv
 
-    hits = np.asarray(hits)
-    if hits.dtype != bool or hits.ndim != 1 or not len(hits):
-        raise ValueError(
-            f"hits must be booleans of shape (runs,), got {hits.dtype} of shape {hits.shape}"
-        )
+    hits = _checks.booleans("hits", hits)
+    if hits.ndim != 1 or not len(hits):
+        raise ValueError(f"hits must be booleans of shape (runs,), got shape {hits.shape}")
     tail = (1 - _checks.probability("confidence", confidence)) / 2
     k, n = int(hits.sum()), len(hits)
     low = betaincinv(k, n - k + 1, tail) if k else 0.0
@@ -181,7 +193,7 @@ def quantile_interval(values, q=0.5, confidence=0.95):
     """
     from scipy.stats import binom
 
-    values = np.sort(_runs(values, 1, infinite=True))
+    values = np.sort(_runs("values", values, 1, infinite=True))
     q = _checks.probability("q", q)
     tail = (1 - _checks.probability("confidence", confidence)) / 2
     n = len(values)
@@ -189,13 +201,33 @@ def quantile_interval(values, q=0.5, confidence=0.95):
     first, last = int(binom.ppf(tail, n, q)), int(binom.isf(tail, n, q)) + 1
     low = values[first - 1] if first >= 1 else -np.inf
     high = values[last - 1] if last <= n else np.inf
-    return Estimate(float(np.quantile(values, q)), float(low), float(high))
+    return Estimate(_quantile(values, q), float(low), float(high))
 
 
-def _runs(values, least, infinite=False):
-    array = _checks.real("values", values)
+def _quantile(values, q):
+    """Return a quantile of sorted values as NumPy defines it, also of infinite ones."""
+    place = (len(values) - 1) * q
+    first = int(place)
+    part, pair = place - first, values[first : first + 2]
+    infinite = np.isinf(pair)
+    if part == 0 or pair[0] == pair[-1]:
+        return float(pair[0])
+    if infinite.any():  # every number between a finite and an infinite one is infinite
+        return float(pair[int(part >= 0.5) if infinite.all() else int(infinite[1])])
+    pair, size = _scaled(pair)
+    return float(np.quantile(pair, part)) * size
+
+
+def _scaled(values):
+    """Return values below 2 and the power of two to multiply by: so no sum or square overflows."""
+    exponent = int(np.frexp(np.abs(values).max())[1]) - 1
+    return np.ldexp(values, -exponent), 2.0**exponent
+
+
+def _runs(name, values, least, infinite=False):
+    array = _checks.real(name, values)
     if array.ndim != 1 or len(array) < least:
-        raise ValueError(f"values must hold at least {least} runs, got shape {array.shape}")
+        raise ValueError(f"{name} must hold at least {least} runs, got shape {array.shape}")
     if np.isnan(array).any() or not (infinite or np.isfinite(array).all()):
-        raise ValueError(f"values must be finite, got {array[~np.isfinite(array)][0]}")
+        raise ValueError(f"{name} must be finite, got {array[~np.isfinite(array)][0]}")
     return array

@@ -4,9 +4,11 @@ from collections import Counter
 
 import numpy as np
 
+from .. import _checks
 from .._records import record
 from .claims import VERDICTS
 from .intervals import Estimate
+from .verdicts import Judgment
 
 
 @record
@@ -17,9 +19,19 @@ class Scorecard:
     ----------
     judgments : tuple of Judgment
         As `judge_all` returns them.
+
+    Raises
+    ------
+    ValueError
+        If one is no `Judgment`.
     """
 
     judgments: tuple
+
+    def __post_init__(self):
+        """Check the fields."""
+        judgments = _checks.records("judgments", self.judgments, Judgment)
+        object.__setattr__(self, "judgments", judgments)
 
     @property
     def counts(self):

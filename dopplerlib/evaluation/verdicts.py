@@ -1,10 +1,12 @@
 """The verdict on a claim: what the document says beside what we find."""
 
+from reprlib import repr as short
+
 import numpy as np
 
 from .. import _checks
 from .._records import record
-from .claims import Claim
+from .claims import Claim, check_claim
 from .intervals import Estimate, share_interval
 
 # Share of our runs that a typical draw leaves on either side of it.
@@ -92,7 +94,8 @@ def judge(claim, evidence):
     Raises
     ------
     ValueError
-        If the evidence is not of the kind that the claim needs, or the published number is
+        If the claim is one that `read_claims` refuses, the evidence is not of the kind that it
+        needs, is NaN or an interval with its ends in the wrong order, or the published number is
         missing or given twice.
 
     Notes
@@ -112,6 +115,7 @@ def judge(claim, evidence):
     >>> judge(claim, 3.14159).verdict
     'reproduced'
     """
+    check_claim(f"claim {_checks.instance('claim', claim, Claim).id!r}", claim)
     if isinstance(evidence, Readings):
         return _judge_readings(claim, evidence)
     published = _published(claim, evidence)
@@ -120,14 +124,16 @@ def judge(claim, evidence):
             raise _wrong(claim, "Draws", evidence)
         return _judge_draw(claim, published, evidence)
     if claim.kind == "relation":
-        if isinstance(evidence, (int, float)):
-            evidence = Estimate(float(evidence), float(evidence), float(evidence))
-        if not isinstance(evidence, Estimate):
+        if isinstance(evidence, (Readings, Draws)):
             raise _wrong(claim, "an Estimate or a float", evidence)
+        if not isinstance(evidence, Estimate):
+            evidence = Estimate(*[_checks.one_number(_name(claim), evidence)] * 3)
+        if not evidence.low <= evidence.value <= evidence.high:  # as it is not if one is NaN
+            raise _wrong(claim, "an Estimate whose value lies between its ends", evidence)
         return _judge_relation(claim, published, evidence)
     if isinstance(evidence, (Estimate, Draws)):
         raise _wrong(claim, "a number", evidence)
-    ours = _checks.finite(f"the evidence for {claim.id!r}", evidence)
+    ours = _checks.finite(_name(claim), evidence)
     if np.shape(published) != ours.shape:
         raise _wrong(claim, f"numbers of shape {np.shape(published)}", evidence)
     # Half a unit of the last digit, and a little for the rounding of decimal fractions.
@@ -141,7 +147,7 @@ def judge_all(claims, evidence):
 
     Parameters
     ----------
-    claims : sequence of Claim
+    claims : iterable of Claim
         As `read_claims` returns them.
     evidence : dict
         Evidence by the id of the claim, for each of them and no others.
@@ -154,8 +160,10 @@ def judge_all(claims, evidence):
     Raises
     ------
     ValueError
-        If a claim has no evidence, evidence has no claim, or the two do not fit.
+        If a claim has no evidence, evidence has no claim, or the two do not fit; see `judge`.
     """
+    claims = _checks.records("claims", claims, Claim)
+    _checks.instance("evidence", evidence, dict)
     names = [claim.id for claim in claims]
     for name in names:
         if name not in evidence:
@@ -167,7 +175,9 @@ def judge_all(claims, evidence):
 
 
 def _judge_draw(claim, published, draws):
-    values = _checks.finite(f"the evidence for {claim.id!r}", draws.values)
+    values = _checks.finite(_name(claim), draws.values)
+    if values.ndim != 1 or not len(values):
+        raise _wrong(claim, "Draws with a number from each run", draws)
     # What is printed as 5.82 may be anything from 5.815 to 5.825.
     below = share_interval(values <= published + claim.rounding, 0.999)
     above = share_interval(values >= published - claim.rounding, 0.999)
@@ -199,8 +209,8 @@ def _judge_relation(claim, limit, estimate):
 
 
 def _judge_readings(claim, readings):
-    if len(readings.by_name) < 2:
-        raise ValueError(f"the evidence for {claim.id!r} must hold two readings or more")
+    if not isinstance(readings.by_name, dict) or len(readings.by_name) < 2:
+        raise _wrong(claim, "two Readings or more, in a dict by their names", readings)
     found = {name: judge(claim, one) for name, one in readings.by_name.items()}
     order = ("reproduced", "typical", "underdetermined", "atypical", "contradicted")
     nearest = min(
@@ -232,10 +242,16 @@ def _published(claim, evidence):
             f"the published number of {claim.id!r} must be given by the claim or by the "
             f"evidence, got it {times}"
         )
-    return claim.published if brought is None else float(brought)
+    if brought is None:
+        return claim.published
+    return _checks.one_number(f"the published number of {claim.id!r}", brought)
+
+
+def _name(claim):
+    return f"the evidence for {claim.id!r}"
 
 
 def _wrong(claim, wanted, evidence):
     return ValueError(
-        f"the evidence for {claim.id!r}, a {claim.kind} claim, must be {wanted}, got {evidence!r}"
+        f"{_name(claim)}, a {claim.kind} claim, must be {wanted}, got {short(evidence)}"
     )

@@ -1,12 +1,10 @@
 """A scenario: sensors, a target's path, and how it is sampled, as a file describes them."""
 
-import tomllib
 from inspect import signature
-from pathlib import Path
 
 import numpy as np
 
-from .. import _checks
+from .. import _checks, _toml
 from .._records import record
 from .doppler import check_clear_of_sensors
 from .radar_array import RadarArray
@@ -99,7 +97,7 @@ class Scenario:
 
         Parameters
         ----------
-        path : str or pathlib.Path
+        path : path-like or Traversable
             File with the tables ``array``, ``target``, ``sampling`` and ``tracker``, as in
             ``data/mittermaier2016/scenario.toml``.
 
@@ -110,20 +108,19 @@ class Scenario:
         Raises
         ------
         ValueError
-            If the file is not TOML, a table or entry is missing or unknown, or an entry has a value
-            that `Scenario` or `RadarArray` refuses. The message names the file and the entry.
+            If the file cannot be read or is not TOML, a table or entry is missing or unknown, or an
+            entry has a value that `Scenario` or `RadarArray` refuses. The message names the file
+            and the entry.
         """
-        try:
-            return cls(**_fields(tomllib.loads(Path(path).read_text(encoding="utf-8"))))
-        except ValueError as error:  # those of TOML and of UTF-8 are ValueErrors as well
-            raise ValueError(f"{path}: {error}") from error
+        with _toml.tables(path) as tables:
+            return cls(**_fields(tables))
 
 
 def _fields(tables):
     """Return the fields of a scenario that the tables of a file describe."""
-    _check_names("the file", tables, ("array", "target", "sampling", "tracker"))
+    _toml.check_names("the file", tables, ("array", "target", "sampling", "tracker"))
     for name, entries in _ENTRIES.items():
-        _check_names(f"[{name}]", tables[name], entries)
+        _toml.check_names(f"[{name}]", tables[name], entries)
     sampling, tracker = tables["sampling"], tables["tracker"]
     return {
         "array": _array(tables["array"]),
@@ -135,26 +132,10 @@ def _fields(tables):
 
 
 def _array(table):
-    _check_names("[array]", table, ("shape",), others=None)
+    _toml.check_names("[array]", table, ("shape",), others=None)
     make = _SHAPES[_checks.one_of("shape in [array]", table["shape"], tuple(_SHAPES))]
     settings = {name: value for name, value in table.items() if name != "shape"}
     parameters = signature(make).parameters.values()
     needed = [p.name for p in parameters if p.default is p.empty]
-    _check_names("[array]", settings, needed, others=[p.name for p in parameters])
+    _toml.check_names("[array]", settings, needed, others=[p.name for p in parameters])
     return make(**settings)
-
-
-def _check_names(where, table, needed, others=()):
-    """Raise unless `table` has all `needed` names, and beside them only `others` (None: any)."""
-    if not isinstance(table, dict):
-        raise ValueError(f"{where} must be a table, got {table!r}")
-    if missing := [name for name in needed if name not in table]:
-        got = ", ".join(table) or "nothing"
-        raise ValueError(f"{where} must have {', '.join(missing)}, got only {got}")
-    if others is None:
-        return
-    known = dict.fromkeys([*needed, *others])
-    if unknown := [name for name in table if name not in known]:
-        raise ValueError(
-            f"{where} must have nothing but {', '.join(known)}, got {', '.join(unknown)}"
-        )

@@ -13,6 +13,7 @@ kind = "random"
 published = 5.82
 rounding = 0.005
 verdict = "typical"
+unit = ""
 page = "figure6"
 cell = "nis"
 test = "tests/test_x.py::test_nis"
@@ -35,12 +36,16 @@ def test_a_claim_has_what_the_file_says(tmp_path):
     [
         (GOOD, "", r"must hold a list of \[\[claim\]\], got none"),
         (GOOD, GOOD + GOOD, "the id of a claim must be unique, got 'nis' twice"),
-        ('where = "Fig 6"', "", "claim 'nis' is incomplete: .*where"),
-        ("cell", "cel", "claim 'nis' has an unknown entry 'cel'"),
+        ('where = "Fig 6"', "", "claim 'nis' must have where, got only"),
+        ("unit", "unt", "claim 'nis' must have nothing but id, .*, got unt"),
         ('"random"', '"luck"', "kind of claim 'nis' must be one of .*, got 'luck'"),
         ('"typical"', '"fine"', "verdict of claim 'nis' must be one of .*, got 'fine'"),
         ('"random"', '"relation"', "relation of claim 'nis' must be one of .*, got None"),
-        ('"typical"', '"contradicted"', "claim 'nis' is contradicted, so it needs a note"),
+        (
+            '"typical"',
+            '"contradicted"',
+            "note of claim 'nis' must say why it is contradicted, got none",
+        ),
     ],
 )
 def test_a_wrong_file_is_refused(tmp_path, old, new, message):

@@ -38,9 +38,9 @@ def test_a_row_shows_both_sides_and_the_way_to_the_cell(tmp_path):
     [
         ("", "must hold a list"),
         (TABLE + TABLE, "unique, got 'box' twice"),
-        (TABLE.replace('"gap"', '"hole"'), "kind of deviation 'box' must be one of gap"),
-        (TABLE.replace("cell", "place"), "unknown entry 'place'"),
-        (TABLE.replace('cell = "boxes"', ""), "'box' is incomplete"),
+        (TABLE.replace('"gap"', '"hole"'), "kind of deviation 'box' must be one of 'gap'"),
+        (TABLE + "place = 1", "must have nothing but id, .*, got place"),
+        (TABLE.replace('cell = "boxes"', ""), "deviation 'box' must have cell, got only"),
     ],
 )
 def test_what_is_no_list_of_deviations_is_refused(tmp_path, text, message):

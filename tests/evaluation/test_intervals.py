@@ -82,8 +82,8 @@ def test_infinite_runs_have_a_median_but_no_mean():
         ),
         (lambda: quantile_interval([np.nan]), "values must be finite, got nan"),
         (lambda: quantile_interval([1.0], q=1.0), "q must lie between 0 and 1, got 1.0"),
-        (lambda: share_interval([]), "hits must be booleans"),
-        (lambda: share_interval([0, 1]), r"hits must be booleans of shape \(runs,\), got int64"),
+        (lambda: share_interval([]), "hits must be an array of booleans"),
+        (lambda: share_interval([0, 1]), r"hits must be an array of booleans, got \[0, 1\]"),
         (lambda: share_interval([True], 95), "confidence must lie between 0 and 1, got 95"),
     ],
 )

@@ -1,11 +1,13 @@
 """A verdict follows from the numbers by the rules that are told, and from nothing else."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from dopplerlib.evaluation.claims import Claim
+from dopplerlib.evaluation.claims import Claim, read_claims
 from dopplerlib.evaluation.intervals import Estimate
 from dopplerlib.evaluation.verdicts import Draws, Readings, judge, judge_all
 
@@ -120,9 +122,90 @@ def test_every_claim_needs_evidence_and_evidence_a_claim():
         (RUN, 50.0, "for 'c', a random claim, must be Draws"),
         (RUN, Draws(HUNDRED, published=50.0), "must be given by the claim .*, got it twice"),
         (replace(RUN, published=None), Draws(HUNDRED), "got it not at all"),
-        (NUMBER, Readings({"only": 0.25}), "for 'a' must hold two readings or more"),
+        (NUMBER, Readings({"only": 0.25}), "for 'a', a .* claim, must be two Readings or more"),
     ],
 )
 def test_evidence_of_the_wrong_kind_is_refused(claim, evidence, message):
     with pytest.raises(ValueError, match=message):
         judge(claim, evidence)
+
+
+DOCUMENTS = sorted((Path(__file__).resolve().parents[2] / "data").glob("*/*claims.toml"))
+CLAIMS = [claim for path in DOCUMENTS for claim in read_claims(path)]
+NOTHING = [
+    np.nan,
+    -np.inf,
+    None,
+    "1.0",
+    True,
+    1j,
+    [],
+    [np.nan, np.nan],
+    Estimate(np.nan, np.nan, np.nan),
+    Estimate(np.nan, -1e300, 1e300),
+    Estimate(0.0, np.nan, 1.0),
+    Estimate(0.0, -1.0, np.nan),
+    Estimate(0.0, 1.0, -1.0),
+    Estimate(2.0, 0.0, 1.0),
+    Draws([np.nan] * 50),
+    Draws([*range(49), np.nan]),
+    Draws(np.arange(50.0), np.nan),
+    Draws([]),
+    Draws("text"),
+    Draws(None),
+    Readings({"a": np.nan, "b": np.nan}),
+    Readings({"a": Draws([np.nan] * 50), "b": Draws([np.nan] * 50)}),
+    Readings({"a": Draws([np.nan] * 50, 1.0), "b": Draws([1.0] * 50, np.nan)}),
+    Readings({"a": Estimate(0.0, np.nan, np.nan), "b": Estimate(np.nan, 0.0, 0.0)}),
+    Readings({}),
+    Readings([1.0, 2.0]),
+]
+
+
+def test_the_documents_are_all_there():
+    assert len(DOCUMENTS) >= 6
+    assert len(CLAIMS) >= 222
+
+
+@pytest.mark.parametrize("evidence", NOTHING, ids=lambda value: str(value)[:40])
+def test_no_claim_of_any_document_gets_a_verdict_from_what_is_no_evidence(evidence):
+    """NaN above all: a broken computation must not look like a contradiction, or like a success."""
+    for claim in CLAIMS:
+        one = evidence
+        if isinstance(evidence, Draws) and evidence.published is None and claim.published is None:
+            one = replace(evidence, published=1.0)
+        with pytest.raises(ValueError, match=re.escape(repr(claim.id))):
+            judge(claim, one)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"kind": "randm"}, {"verdict": "fine"}, {"rounding": np.nan}, {"rounding": -1.0},
+        {"rounding": np.inf}, {"published": np.nan}, {"published": "1"}, {"published": True},
+        {"relation": "="}, {"id": 1}, {"note": None},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_no_verdict_on_a_claim_that_no_file_may_hold(changed):
+    for claim in CLAIMS[::20]:
+        with pytest.raises(ValueError, match=f"{next(iter(changed))} .*must"):
+            judge(replace(claim, **changed), 1.0)
+
+
+@pytest.mark.parametrize("claim", [None, "a", {"id": "a"}])
+def test_what_is_no_claim_is_refused(claim):
+    with pytest.raises(ValueError, match="claim must be a Claim"):
+        judge(claim, 1.0)
+    with pytest.raises(ValueError, match="claims must be a Claim"):
+        judge_all([claim], {})
+    with pytest.raises(ValueError, match="claims must be an iterable, got 3"):
+        judge_all(3, {})
+    with pytest.raises(ValueError, match="evidence must be a dict, got"):
+        judge_all([], claim)
+
+
+def test_claims_may_come_from_an_iterator():
+    claim = next(c for c in CLAIMS if c.kind == "deterministic" and np.ndim(c.published) == 0)
+    evidence = {claim.id: claim.published}
+    assert judge_all(iter([claim]), evidence) == judge_all([claim], evidence)
