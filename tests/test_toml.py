@@ -197,7 +197,7 @@ def test_numbers_that_do_not_fit_into_memory_are_refused(tmp_path):
     ids=lambda value: repr(value)[:12],
 )
 def test_what_is_no_path_of_a_file_is_refused(what, path):
-    with pytest.raises(ValueError, match="^path must be a (path|file)"):
+    with pytest.raises(ValueError, match=r"^path must be a (path|file)"):
         READ[what](path)
 
 
@@ -206,7 +206,7 @@ def test_a_number_is_no_open_file(what, tmp_path):
     (tmp_path / "a.toml").write_text(TEXTS[what])
     number = os.open(tmp_path / "a.toml", os.O_RDONLY)
     try:
-        with pytest.raises(ValueError, match="^path must be a path"):
+        with pytest.raises(ValueError, match=r"^path must be a path"):
             READ[what](number)
         os.fstat(number)  # it was not closed
     finally:
@@ -217,5 +217,5 @@ def test_a_number_is_no_open_file(what, tmp_path):
 def test_a_folder_and_a_pipe_are_refused(what, tmp_path):
     os.mkfifo(tmp_path / "pipe")  # reading it would wait for ever
     for path in (tmp_path, tmp_path / "pipe", "/dev/null"):
-        with pytest.raises(ValueError, match="^path must be a file that exists"):
+        with pytest.raises(ValueError, match=r"^path must be a file that exists"):
             READ[what](path)

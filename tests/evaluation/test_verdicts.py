@@ -201,8 +201,8 @@ def test_what_is_no_claim_is_refused(claim):
         judge_all([claim], {})
     with pytest.raises(ValueError, match="claims must be an iterable, got 3"):
         judge_all(3, {})
-    with pytest.raises(ValueError, match="evidence must be a dict, got"):
-        judge_all([], claim)
+    with pytest.raises(ValueError, match="evidence must be a dict, got 3"):
+        judge_all([], 3)
 
 
 def test_claims_may_come_from_an_iterator():
