@@ -24,9 +24,6 @@ MODULES = sorted(
 )
 
 
-BUILT = ROOT / "book" / "_build" / "html" / "api.html"
-
-
 def directives(kind):
     """Return the arguments of all directives of a kind, in the order of the page."""
     return re.findall(rf"^\.\. {kind}:: (\S+)$", PAGE, flags=re.MULTILINE)
@@ -101,9 +98,9 @@ def visible_names(page):
     return found
 
 
-@pytest.mark.skipif(not BUILT.exists(), reason="the book is not built")
-def test_every_entry_of_the_built_page_can_be_imported_as_it_stands_there():
-    entries, owner = visible_names(BUILT.read_text(encoding="utf-8")), None
+def test_every_entry_of_the_built_page_can_be_imported_as_it_stands_there(built_book):
+    page, owner = (built_book / "api.html").read_text(encoding="utf-8"), None
+    entries = visible_names(page)
     assert len(entries) >= len(directives("autofunction") + directives("autoclass")) + len(MODULES)
     for kind, name in entries:
         if kind in ("method", "property", "attribute"):  # below the class that it belongs to
