@@ -14,7 +14,7 @@ import pkgutil
 import sys
 from importlib import import_module
 
-EXTRAS = {"matplotlib": "figures", "sympy": "derive"}
+EXTRAS = {"matplotlib": "figures", "sympy": "derive", "sigmf": "recordings"}
 COMPILED = ("estimation, compiled", "figures.figure6")
 
 
