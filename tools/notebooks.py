@@ -8,7 +8,6 @@ the name of the machine's kernel) is removed.
 import json
 import os
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -18,14 +17,13 @@ from nbclient.exceptions import CellExecutionError
 
 from dopplerlib._files import write_text
 from tools.command import parser, start
+from tools.isolation import ONE_THREAD, own_profile
 from tools.prose import as_text, text_path
 
 ROOT = Path(__file__).resolve().parent.parent
 FIXED = {
     "PYTHONHASHSEED": "0",
     "SOURCE_DATE_EPOCH": "0",
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
     "PYDEVD_DISABLE_FILE_VALIDATION": "1",  # else a warning on stderr, from Python 3.12 on
 }
 METADATA = {
@@ -74,8 +72,8 @@ def execute(path, timeout):
     for cell in nb.cells:
         if cell.cell_type == "code":  # an empty cell is never run: it must not keep an old count
             cell.execution_count, cell.outputs = None, []
-    with tempfile.TemporaryDirectory() as profile:
-        env = {k: v for k, v in os.environ.items() if k != "MPLBACKEND"} | FIXED
+    with own_profile():
+        env = {k: v for k, v in os.environ.items() if k != "MPLBACKEND"} | FIXED | ONE_THREAD
         client = NotebookClient(
             nb,
             timeout=timeout,
@@ -85,7 +83,7 @@ def execute(path, timeout):
             extra_arguments=["--log-level=ERROR"],
             resources={"metadata": {"path": str(path.parent)}},
         )
-        client.execute(env=env | {"IPYTHONDIR": profile})
+        client.execute(env=env)
     nb.metadata = nbformat.from_dict(METADATA)
     for number, cell in enumerate(nb.cells):
         for key in TRANSIENT:

@@ -1,11 +1,12 @@
 """The tool that executes chapters must notice every change, and never lose a file."""
 
 import json
+import os
 
 import nbformat
 import pytest
 
-from tools import notebooks
+from tools import isolation, notebooks
 
 FIGURE = "from IPython.display import display\n\ndisplay({'image/png': 'iVBO'}, raw=True)"
 
@@ -88,3 +89,14 @@ def test_copies_of_a_chapter_are_no_chapters(tmp_path):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
     assert notebooks.chapters(tmp_path) == [tmp_path / "a.ipynb", tmp_path / "part" / "b.ipynb"]
+
+
+def test_a_chapter_needs_no_home_and_takes_nothing_from_it(chapter, monkeypatch, tmp_path):
+    for name in (*isolation.PROFILE, "MPLCONFIGDIR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", "/dev/null")
+    before = dict(os.environ)
+    path = chapter("import matplotlib\n\nprint(matplotlib.get_configdir() != '/dev/null')")
+    assert notebooks.main([str(path)]) == 0
+    assert "True" in path.read_text(encoding="utf8")
+    assert dict(os.environ) == before
