@@ -122,8 +122,9 @@ def nees_samples(P, F, Q):
     Raises
     ------
     ValueError
-        If the shapes do not fit, a matrix is not finite or no covariance, or `P` is singular in
-        another way than by components that are known.
+        If the shapes do not fit, a matrix is not finite or no covariance, `P` is singular in
+        another way than by components that are known, or `F` and `Q` predict a covariance that is
+        singular to rounding.
 
     Notes
     -----
@@ -160,7 +161,12 @@ def nees_samples(P, F, Q):
     L = np.linalg.cholesky(P)
     predicted = F[1:] @ P[:-1] @ F[1:].mT + Q[1:]
     # C of neighbors: L_k^-1 P_k = L_k', so that only the prediction has to be solved for.
-    step = L[1:].mT @ np.linalg.solve(predicted, F[1:] @ L[:-1])
+    try:
+        step = L[1:].mT @ np.linalg.solve(predicted, F[1:] @ L[:-1])
+    except np.linalg.LinAlgError:
+        raise ValueError(
+            "F and Q must give F P F' + Q an inverse, got a matrix that is singular to rounding"
+        ) from None
     C, total = step, 0.0
     for lag in range(1, len(P)):
         total += np.sum(C**2)

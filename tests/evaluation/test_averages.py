@@ -142,6 +142,11 @@ def test_the_effective_interval_holds_its_share_and_the_naive_one_does_not(right
         (nees_samples, (np.eye(2), np.eye(2), np.eye(2)), "P must have shape"),
         (nees_samples, (-np.ones((3, 1, 1)), [[1]], [[0]]), "P must be positive definite"),
         (nees_samples, (np.ones((3, 1, 1)), [[1]], [[-1]]), "Q must be"),
+        (
+            nees_samples,
+            ([np.diag([1e-12, 1e12])] * 3, [[1, 1e-3], [0, 1]], np.zeros((2, 2))),
+            "F and",
+        ),
     ],
 )
 def test_wrong_arguments_are_named(function, arguments, message):
