@@ -1,5 +1,6 @@
 """Checks of arguments, for the public edge: every error names argument, value and expectation."""
 
+import inspect
 from collections.abc import Iterator, MappingView
 
 import numpy as np
@@ -197,11 +198,14 @@ def positive_number(name, value):
     return one_number(name, value, positive)
 
 
+def is_whole(value):
+    """Return whether `value` is a whole number: no boolean, and no duration of NumPy."""
+    return isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.timedelta64))
+
+
 def whole_number(name, value, least=1):
     """Return `value` as an int, or raise if it is not a whole number of at least `least`."""
-    # A boolean is an int, and a duration of NumPy an integer, but neither is a number.
-    whole = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.timedelta64))
-    if not whole or not least <= value < 2**63:
+    if not is_whole(value) or not least <= value < 2**63:
         raise ValueError(f"{name} must be a whole number of at least {least}, got {_short(value)}")
     return int(value)
 
@@ -225,32 +229,46 @@ def one_of(name, value, choices):
 
 def some_of(name, values, choices):
     """Return `values`, or raise if it is not a collection that holds only some of `choices`."""
-    if isinstance(values, str) or not hasattr(values, "__iter__"):
-        raise ValueError(
-            f"{name} must be a collection of {', '.join(map(repr, choices))}, got {_short(values)}"
-        )
-    return tuple(one_of(name, value, choices) for value in values)
+    wanted = f"a collection of {', '.join(map(repr, choices))}"
+    return tuple(one_of(name, value, choices) for value in iterable(name, values, wanted))
 
 
 def components(name, values, count):
     """Return `values`, any iterable, as a tuple of places from 0 to `count` - 1, or raise."""
-    wanted = f"{name} must hold components from 0 to {count - 1}"
-    try:
-        places = tuple(values)
-    except TypeError:
-        raise ValueError(f"{wanted}, got {_short(values)}") from None
-    for place in places:
-        whole = isinstance(place, (int, np.integer))
-        if not whole or isinstance(place, (bool, np.timedelta64)) or not 0 <= place < count:
-            raise ValueError(f"{wanted}, got {_short(places)}")
+    wanted = f"some of the components from 0 to {count - 1}"
+    places = tuple(iterable(name, values, wanted))
+    if not all(is_whole(place) and 0 <= place < count for place in places):
+        raise ValueError(f"{name} must be {wanted}, got {_short(places)}")
     return places
 
 
-def iterable(name, values):
-    """Return an iterator over `values`, or raise if there is none."""
-    if isinstance(values, str) or not hasattr(values, "__iter__"):
-        raise ValueError(f"{name} must be an iterable, got {_short(values)}")
-    return iter(values)
+def iterable(name, values, wanted="an iterable"):
+    """Return an iterator over `values`, or raise if there is none or it is text."""
+    try:
+        iterator = iter(values)
+    except TypeError:
+        iterator = None
+    if iterator is None or isinstance(values, str):
+        raise ValueError(f"{name} must be {wanted}, got {_short(values)}")
+    return iterator
+
+
+def called(name, function, *arguments):
+    """Return what a function that was handed in returns, or raise if it does not take them."""
+    if not callable(function):
+        raise ValueError(f"{name} must be a function, got {_short(function)}")
+    try:
+        return function(*arguments)
+    except TypeError:
+        try:
+            inspect.signature(function).bind(*arguments)
+        except TypeError as error:
+            raise ValueError(
+                f"{name} must take {len(arguments)} argument(s), got a function with {error}"
+            ) from None
+        except ValueError:  # a function of C that does not tell
+            pass
+        raise
 
 
 def function(name, value):
@@ -342,6 +360,8 @@ def _numbers(name, value, kinds, wanted):
     """Return `value` as an array whose dtype is of one of `kinds`, or raise."""
     if isinstance(value, (Iterator, MappingView)):
         value = list(value)  # NumPy would make one object of it
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        value = str(value)  # NumPy would take it for small numbers
     good = type(value) in _PLAIN or _nothing_is_lost(name, value, wanted, "b" in kinds)
     try:
         array = np.asarray(value)

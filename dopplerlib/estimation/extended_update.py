@@ -18,6 +18,7 @@ def ekf_innovation(x, P, z, h, H, R, wrap=()):
     Returns
     -------
     innovation : ndarray, shape (..., m)
+        NaN where `z` is NaN.
     S : ndarray, shape (..., m, m)
 
     Raises
@@ -117,9 +118,9 @@ def linearized(x, z, h, H, wrap=()):
     Parameters
     ----------
     x : ndarray, shape (..., n)
-        Predicted states.
+        Predicted states, unchecked.
     z : ndarray, shape (..., m)
-        Measurements; NaN where one is missing.
+        Measurements, unchecked; NaN where one is missing.
     h, H, wrap
         See `ekf_update`.
 
@@ -136,8 +137,9 @@ def linearized(x, z, h, H, wrap=()):
     """
     m = z.shape[-1]
     wrap = _checks.components("wrap", wrap, m)
-    predicted = _checks.finite("h(x)", _checks.function("h", h)(x), (m,))
-    J = _checks.finite("H(x)", _checks.function("H", H)(x), (m, x.shape[-1]))
+    predicted = _checks.finite("h(x)", _checks.called("h", h, x), (m,))
+    J = _checks.finite("H(x)", _checks.called("H", H, x), (m, x.shape[-1]))
+    _checks.check_leading(**{"x": (x, 1), "z": (z, 1), "h(x)": (predicted, 1), "H(x)": (J, 2)})
     innovation = z - predicted
     for i in wrap:
         innovation[..., i] = (innovation[..., i] + np.pi) % (2 * np.pi) - np.pi

@@ -1,4 +1,4 @@
-"""Gaussian estimates and linear measurements: the algebra of all filters. Nothing is checked here.
+"""Gaussian estimates and linear measurements: the algebra of all filters, unchecked.
 
 Covariances are computed as squares: with a square root P = L L', the covariance F P F' is the
 product of F L with its own transpose. So it has no negative variance, and every entry is off by

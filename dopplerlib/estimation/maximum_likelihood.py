@@ -182,6 +182,7 @@ def ml_start(z, array, sigma_f, T, box, likelihood="moving", *, at="first", work
         information = back.T @ information @ back
     P = np.full((runs, 6, 6), np.nan)
     identifiable = np.zeros(runs, bool)
+    _checks.estimates("z, array, sigma_f, T, box", information[solved])
     P[solved], identifiable[solved] = inverse_information(information[solved], free)
     fields = x, P, cost, at_bound, identifiable, converged, second_x, second_cost
     return Start(*(field.reshape((*batch, *field.shape[1:])) for field in fields))

@@ -65,6 +65,7 @@ def steady_state_gain(F, Q, H, R):
         raise ValueError("F, H, Q must let the filter settle, got no stable solution") from None
     K, P, _ = gaussian.gain(predicted, H, R)
     A = np.eye(n) - K @ H
+    _checks.estimates("F, Q, H, R", K, P, A @ F)
     # A double eigenvalue of 1 comes out with an error of half the digits.
     if np.abs(np.linalg.eigvals(A @ F)).max() > 1 - 1e-7:
         raise ValueError("F, H, Q must let the filter settle, got errors that never die out")
@@ -115,6 +116,9 @@ def steady_state_lag(F, H, K, push):
     K = _checks.matrix("K", K, (n, m))
     push = _checks.finite("push", push, (n,))
     A = np.eye(n) - K @ H
+    _checks.estimates("F, H, K", A @ F)
     if np.abs(np.linalg.eigvals(A @ F)).max() >= 1:
         raise ValueError("K must let errors die out, got a filter that is not stable")
-    return np.linalg.solve(np.eye(n) - A @ F, (A @ push[..., None]))[..., 0]
+    lag = np.linalg.solve(np.eye(n) - A @ F, A @ push[..., None])[..., 0]
+    _checks.estimates("F, H, K, push", lag)
+    return lag

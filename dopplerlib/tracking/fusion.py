@@ -121,6 +121,7 @@ def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
     """
     P12 = _checks.finite("P12", P12, (None, None))
     n = P12.shape[-1]
+    _checks.check_shape("P12", P12, (n, n))
     F, Q = _checks.finite("F", F, (n, n)), _checks.covariance("Q", Q, n, definite=False)
     leading, keep = {"P12": (P12, 2), "F": (F, 2), "Q": (Q, 2)}, []
     for K_name, K, H_name, H in (("K1", K1, "H1", H1), ("K2", K2, "H2", H2)):

@@ -20,12 +20,24 @@ class TrackLife:
         Number of scans since the detection that started it, which counts as one.
     misses : int
         Number of scans in a row without a detection.
+
+    Raises
+    ------
+    ValueError
+        If a field is of another kind.
     """
 
     status: str
     recent: tuple
     age: int
     misses: int
+
+    def __post_init__(self):
+        """Check the fields."""
+        _checks.one_of("status", self.status, (TENTATIVE, CONFIRMED, DELETED))
+        _checks.some_of("recent", self.recent, (True, False))
+        _checks.whole_number("age", self.age)
+        _checks.whole_number("misses", self.misses, least=0)
 
 
 @record

@@ -120,14 +120,15 @@ def track_scans(
         z = z[places]
         may_start = np.ones(len(z), bool)
         if new is not None and len(z):
-            may_start = _checks.booleans("new(z)", new(z), (len(z),))
+            may_start = _checks.booleans("new(z)", _checks.called("new", new, z), (len(z),))
         free = np.ones(len(z), bool)
         if alive:
             x, P = (np.stack([track[name][-1] for track in alive]) for name in ("x", "P"))
             x, P = gaussian.predict(x, P, F, Q)
             _checks.estimates("F, Q", x, P)
             nu, J = linearized(x[:, None], z, h, H, wrap)
-            J = np.broadcast_to(J, (len(alive), 1, *J.shape[-2:]))[:, 0]
+            nu = _checks.each_run("h(x)", nu, (len(alive), len(z)), (m,))
+            J = _checks.each_run("H(x)", J, (len(alive), 1), (m, n))[:, 0]
             K, updated, S = gaussian.gain(P, J, R)
             cost = gaussian.quadratic_forms(nu, S)
             cost = np.where(cost <= size, cost, np.inf)
@@ -136,7 +137,7 @@ def track_scans(
             for some, open_to_them in ((first, True), (~first, may_start)):
                 if some.any():
                     pairs = np.where(free & open_to_them, cost[some], np.inf)
-                    assigned[some] = _assignment(assign(pairs, size), pairs)
+                    assigned[some] = _assigned(assign, pairs, size)
                     free[assigned[assigned >= 0]] = False
             seen = assigned >= 0
             x[seen] = gaussian.moved(x[seen], K[seen], nu[seen, assigned[seen]])
@@ -146,17 +147,17 @@ def track_scans(
                 place = places[assigned[i]] if seen[i] else -1
                 _extend(track, number, x[i], P[i], place, manager)
         left = np.flatnonzero(may_start & free)
-        x, P = _started(start(z[left]), len(left), n) if len(left) else ((), ())
+        x, P = _started(start, z[left], n) if len(left) else ((), ())
         begun = [_begin(number, *state, manager) for state in zip(x, P, places[left], strict=True)]
         done += begun
         alive = [track for track in alive if track["life"].status != DELETED] + begun
     return [_frozen(track) for track in done]
 
 
-def _assignment(value, cost):
-    """Return what `assign` gave: for each track a detection, none twice, or -1."""
+def _assigned(assign, cost, gate):
+    """Return what `assign` gives: for each track a detection, none twice, or -1."""
     tracks, detections = cost.shape
-    array = np.asarray(value)
+    array = np.asarray(_checks.called("assign", assign, cost, gate))
     good = array.dtype.kind in "iu" and array.shape == (tracks,)
     if good:
         taken = array[array >= 0]
@@ -169,7 +170,8 @@ def _assignment(value, cost):
     return array
 
 
-def _started(states, count, n):
+def _started(start, z, n):
+    states, count = _checks.called("start", start, z), len(z)
     try:
         x, P = states
     except (TypeError, ValueError):

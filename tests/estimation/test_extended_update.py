@@ -133,3 +133,19 @@ def test_bad_input_is_named(name, value):
     with pytest.raises(ValueError) as raised:
         ekf_update(**(arguments | {key: value}))
     assert str(raised.value).startswith(f"{name} must ")
+
+
+def test_functions_that_do_not_fit_are_refused_and_their_own_errors_come_through():
+    arguments = {"x": x, "P": P, "z": z, "h": linear_h, "H": linear_H, "R": R}
+    with pytest.raises(
+        ValueError, match=r"^h must take 1 argument\(s\), got a function with too many"
+    ):
+        ekf_update(**arguments | {"h": lambda: z})
+    with pytest.raises(ValueError, match=r"leading axes that broadcast, got .* \(7,\) of H\(x\)"):
+        ekf_update(**arguments | {"H": lambda x: np.stack([LINEAR] * 7)})
+
+    def broken(x):
+        return x + "text"
+
+    with pytest.raises(TypeError):
+        ekf_update(**arguments | {"H": broken})

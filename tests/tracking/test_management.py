@@ -4,7 +4,7 @@ from itertools import product
 
 import pytest
 
-from dopplerlib.tracking.management import TrackManager
+from dopplerlib.tracking.management import TrackLife, TrackManager
 
 
 def lives(manager, scans):
@@ -70,3 +70,28 @@ def test_age_and_misses_are_counted():
 def test_impossible_rules_are_refused(rules, name):
     with pytest.raises(ValueError, match=rf"^{name} must "):
         TrackManager(*rules)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("status", "lost", "status must be one of 'tentative', 'confirmed', 'deleted', got 'lost'"),
+        ("recent", (1,), "recent must be one of True, False, got 1"),
+        ("recent", None, "recent must be a collection of True, False, got None"),
+        ("age", 0, "age must be a whole number of at least 1, got 0"),
+        ("misses", -1, "misses must be a whole number of at least 0, got -1"),
+    ],
+)
+def test_a_life_that_cannot_be_is_refused(name, value, message):
+    fields = {"status": "tentative", "recent": (True,), "age": 1, "misses": 0}
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        TrackLife(**fields | {name: value})
+
+
+def test_only_a_life_and_a_boolean_advance_a_track():
+    manager = TrackManager(hits=2, window=3, delete_after=2)
+    with pytest.raises(ValueError, match=r"^life must be a TrackLife, got None"):
+        manager.advance(None, True)
+    for detected in ("no", 1, None):
+        with pytest.raises(ValueError, match=r"^detected must be True or False, got "):
+            manager.advance(manager.start(), detected)
