@@ -13,8 +13,8 @@ def nees(track, truth):
 
     Parameters
     ----------
-    track : Track
-        Estimates `x` and covariances `P`.
+    track : Track or ImmTrack
+        Estimates `x` and covariances `P`; any record that has them will do.
     truth : array_like, shape (..., K, n)
         True states; broadcasts against ``track.x``.
 
@@ -59,7 +59,8 @@ def nees(track, truth):
 
 def estimates(track):
     """Return states and covariances of a track, or raise if it has none that can be judged."""
-    _checks.instance("track", track, Track)
+    if not (hasattr(track, "x") and hasattr(track, "P")):  # an ImmTrack has them as well
+        _checks.instance("track", track, Track)
     if track.P is None:
         raise ValueError('track must hold P, got None: ask ekf for it with keep=("P",)')
     x = _checks.finite("track.x", track.x, (None, None))

@@ -13,6 +13,7 @@ import pytest
 from scipy.stats import binom, chi2, kstest, norm
 
 from dopplerlib import Track, chi2_interval, nees, nis
+from dopplerlib.estimation.imm import ImmTrack
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "mittermaier2016"
 FALSE_ALARM = 1e-6
@@ -41,6 +42,14 @@ def record():
     P = covariances(rng, 50, 200, 6, 6)
     truth = rng.normal(size=(200, 6))
     return truth, track(truth + draws(rng, P), P)
+
+
+def test_several_models_are_judged_like_one(record):
+    truth, one = record
+    many = ImmTrack(one.x, one.P, np.ones((*one.x.shape[:-1], 1)))
+    np.testing.assert_array_equal(nees(many, truth), nees(one, truth))
+    with pytest.raises(ValueError, match=r"^track must be a Track, got 'x'"):
+        nees("x", truth)
 
 
 def by_inverse(error, P):
