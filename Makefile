@@ -61,9 +61,10 @@ test-matrix:  ## test the library with every Python that is found, and with the 
 	$(PYTHON) -m tools.matrix $(PYTHONS)
 
 .PHONY: lint
-lint: $(VENV)/.ready  ## check style and formatting
+lint: $(VENV)/.ready  ## check style, formatting and types
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
+	$(VENV)/bin/mypy
 
 .PHONY: format
 format: $(VENV)/.ready  ## repair what can be repaired of style and formatting
@@ -140,7 +141,7 @@ lock: $(if $(filter .venv-uv/%,$(UV)),.venv-uv/.ready)  ## renew all lock files
 
 .PHONY: clean
 clean:  ## remove everything that the other targets made
-	rm -rf $(VENV) $(BENCH) .venv-uv .venv-matrix book/_build *.egg-info .hypothesis .ruff_cache
+	rm -rf $(VENV) $(BENCH) .venv-uv .venv-matrix book/_build *.egg-info .hypothesis .ruff_cache .mypy_cache
 	find dopplerlib book data tests tools benchmarks \
 		\( -name __pycache__ -o -name '*.part' -o -name '.partial-*' \) -prune -exec rm -rf {} +
 

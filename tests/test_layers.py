@@ -11,6 +11,7 @@ ORDER = [
     "_lazy",
     "_records",
     "_data",
+    "_typing",
     "_checks",
     "_compile",
     "_progress",

@@ -1,11 +1,14 @@
 """The extended Kalman filter for Doppler measurements of a target at constant velocity."""
 
 import os
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Literal
 
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ..model.doppler import check_clear_of_sensors
 from ..model.motion import constant_velocity
 from ..model.radar_array import RadarArray
@@ -16,20 +19,20 @@ _OPTIONAL = ("P", "innovation", "S")
 
 @_checks.quiet
 def ekf(
-    z,
-    array,
-    x0,
-    P0,
-    T,
-    sigma_p,
-    sigma_f,
-    noise="common",
-    gate=None,
+    z: ArrayLike,
+    array: RadarArray,
+    x0: ArrayLike,
+    P0: ArrayLike,
+    T: ArrayLike,
+    sigma_p: float,
+    sigma_f: ArrayLike,
+    noise: Literal["common", "independent"] = "common",
+    gate: Literal["upper", "two-sided"] | None = None,
     *,
-    confidence=0.95,
-    keep=_OPTIONAL,
-    workers=None,
-):
+    confidence: float = 0.95,
+    keep: Iterable[str] = _OPTIONAL,
+    workers: int | None = None,
+) -> Track:
     """Track a target from its Doppler shifts, over a whole record and for many runs at once.
 
     Every cycle predicts, then updates. The Jacobian is that of the predicted state.
@@ -169,7 +172,9 @@ def ekf(
 
 
 @_checks.quiet
-def gate_bounds(gate, sensors, confidence=0.95):
+def gate_bounds(
+    gate: Literal["upper", "two-sided"] | None, sensors: int, confidence: float = 0.95
+) -> tuple[FloatArray, FloatArray]:
     """Return the bounds of the gate on NIS for 0, 1, ..., `sensors` measurements.
 
     Parameters

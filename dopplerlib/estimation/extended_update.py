@@ -1,13 +1,25 @@
 """One update of an extended Kalman filter with any measurement function."""
 
+from collections.abc import Callable, Iterable
+from typing import Any
+
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from . import gaussian
 
 
 @_checks.quiet
-def ekf_innovation(x, P, z, h, H, R, wrap=()):
+def ekf_innovation(
+    x: ArrayLike,
+    P: ArrayLike,
+    z: ArrayLike,
+    h: Callable[..., Any],
+    H: Callable[..., Any],
+    R: ArrayLike,
+    wrap: Iterable[int] = (),
+) -> tuple[FloatArray, FloatArray]:
     """Return the innovation and its covariance: what a gate looks at before the update.
 
     Parameters
@@ -46,7 +58,16 @@ def ekf_innovation(x, P, z, h, H, R, wrap=()):
 
 
 @_checks.quiet
-def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
+def ekf_update(
+    x: ArrayLike,
+    P: ArrayLike,
+    z: ArrayLike,
+    h: Callable[..., Any],
+    H: Callable[..., Any],
+    R: ArrayLike,
+    wrap: Iterable[int] = (),
+    accept: ArrayLike | None = None,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the state and covariance after a measurement of a nonlinear function of the state.
 
     Parameters
@@ -112,7 +133,13 @@ def ekf_update(x, P, z, h, H, R, wrap=(), accept=None):
     return x, P, innovation, S
 
 
-def linearized(x, z, h, H, wrap=()):
+def linearized(
+    x: FloatArray,
+    z: FloatArray,
+    h: Callable[..., Any],
+    H: Callable[..., Any],
+    wrap: Iterable[int] = (),
+) -> tuple[FloatArray, FloatArray]:
     """Return the innovation of a nonlinear measurement, and the Jacobian: all that an EKF adds.
 
     Parameters

@@ -14,10 +14,11 @@ likelihood), and where all are missing the estimate stays as it was, bit by bit.
 import numpy as np
 
 from .. import _checks
+from .._typing import BoolArray, FloatArray
 
 
 @_checks.quiet
-def square_root(P):
+def square_root(P: FloatArray) -> FloatArray:
     """Return square roots L of covariances: L L' is P to rounding.
 
     Parameters
@@ -43,7 +44,7 @@ def square_root(P):
 
 
 @_checks.quiet
-def squared(A):
+def squared(A: FloatArray) -> FloatArray:
     """Return A A', symmetric.
 
     Parameters
@@ -58,7 +59,9 @@ def squared(A):
 
 
 @_checks.quiet
-def predict(x, P, F, Q):
+def predict(
+    x: FloatArray, P: FloatArray, F: FloatArray, Q: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Return state and covariance after a linear step: F x and F P F' + Q.
 
     Parameters
@@ -79,7 +82,7 @@ def predict(x, P, F, Q):
 
 
 @_checks.quiet
-def innovation(x, z, H):
+def innovation(x: FloatArray, z: FloatArray, H: FloatArray) -> FloatArray:
     """Return measured minus predicted measurement, z - H x.
 
     Parameters
@@ -99,7 +102,9 @@ def innovation(x, z, H):
 
 
 @_checks.quiet
-def gain(P, H, R, there=True):
+def gain(
+    P: FloatArray, H: FloatArray, R: FloatArray, there: BoolArray | bool = True
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the gain of an update, the covariance after it, and that of the innovation.
 
     Parameters
@@ -150,7 +155,7 @@ def gain(P, H, R, there=True):
 
 
 @_checks.quiet
-def moved(x, K, innovation):
+def moved(x: FloatArray, K: FloatArray, innovation: FloatArray) -> FloatArray:
     """Return states after a measurement: x + K innovation, without what is missing.
 
     Parameters
@@ -170,7 +175,9 @@ def moved(x, K, innovation):
 
 
 @_checks.quiet
-def update(x, P, innovation, H, R):
+def update(
+    x: FloatArray, P: FloatArray, innovation: FloatArray, H: FloatArray, R: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return state and covariance after a measurement, and the covariance of the innovation.
 
     Parameters
@@ -198,7 +205,7 @@ def update(x, P, innovation, H, R):
 
 
 @_checks.quiet
-def quadratic_forms(v, S):
+def quadratic_forms(v: FloatArray, S: FloatArray) -> FloatArray:
     """Return v' S^-1 v of many vectors with one covariance, such as the NIS of all detections.
 
     Parameters
@@ -226,7 +233,7 @@ def quadratic_forms(v, S):
 
 
 @_checks.quiet
-def quadratic_form(v, S):
+def quadratic_form(v: FloatArray, S: FloatArray) -> FloatArray:
     """Return v' S^-1 v of each vector with a covariance of its own, such as NIS.
 
     Parameters
@@ -250,7 +257,7 @@ def quadratic_form(v, S):
 
 
 @_checks.quiet
-def log_density(v, S):
+def log_density(v: FloatArray, S: FloatArray) -> FloatArray:
     """Return the logarithm of the density of zero-mean Gaussians at vectors.
 
     Parameters
@@ -278,7 +285,7 @@ def log_density(v, S):
 
 
 @_checks.quiet
-def mixture(x, P, weight):
+def mixture(x: FloatArray, P: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return mean and covariance of mixtures.
 
     Parameters
@@ -302,7 +309,14 @@ def mixture(x, P, weight):
 
 
 @_checks.quiet
-def smooth(x, P, F, Q, x_next, P_next):
+def smooth(
+    x: FloatArray,
+    P: FloatArray,
+    F: FloatArray,
+    Q: FloatArray,
+    x_next: FloatArray,
+    P_next: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
     """Return a filtered estimate after what a later one, smoothed, teaches about it.
 
     Parameters
@@ -335,7 +349,7 @@ def smooth(x, P, F, Q, x_next, P_next):
 
 
 @_checks.quiet
-def solve(P, B):
+def solve(P: FloatArray, B: FloatArray) -> FloatArray:
     """Return P^-1 B, in which directions without any spread but rounding take no part.
 
     Parameters

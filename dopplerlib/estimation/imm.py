@@ -4,6 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike
 from . import gaussian
 
 
@@ -27,7 +28,17 @@ class ImmTrack:
 
 
 @_checks.quiet
-def imm(z, F, Q, H, R, transition, x0, P0, mode0=None):
+def imm(
+    z: ArrayLike,
+    F: ArrayLike,
+    Q: ArrayLike,
+    H: ArrayLike,
+    R: ArrayLike,
+    transition: ArrayLike,
+    x0: ArrayLike,
+    P0: ArrayLike,
+    mode0: ArrayLike | None = None,
+) -> ImmTrack:
     """Filter whole records with several linear models between which the target may switch.
 
     Every cycle mixes, predicts, then updates.

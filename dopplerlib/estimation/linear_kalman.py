@@ -3,12 +3,15 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from . import gaussian
 from .track import Track
 
 
 @_checks.quiet
-def kf_predict(x, P, F, Q):
+def kf_predict(
+    x: ArrayLike, P: ArrayLike, F: ArrayLike, Q: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
     """Return the predicted state and covariance: F x and F P F' + Q.
 
     Parameters
@@ -57,7 +60,9 @@ def kf_predict(x, P, F, Q):
 
 
 @_checks.quiet
-def kf_update(x, P, z, H, R):
+def kf_update(
+    x: ArrayLike, P: ArrayLike, z: ArrayLike, H: ArrayLike, R: ArrayLike
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the state and covariance after a measurement, in Joseph form.
 
     Parameters
@@ -118,7 +123,15 @@ def kf_update(x, P, z, H, R):
 
 
 @_checks.quiet
-def kf(z, F, Q, H, R, x0, P0):
+def kf(
+    z: ArrayLike,
+    F: ArrayLike,
+    Q: ArrayLike,
+    H: ArrayLike,
+    R: ArrayLike,
+    x0: ArrayLike,
+    P0: ArrayLike,
+) -> Track:
     """Filter whole records with a linear Kalman filter, many runs at once.
 
     Every cycle predicts, then updates, like `ekf`.

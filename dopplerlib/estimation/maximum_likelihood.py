@@ -2,11 +2,13 @@
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from typing import Literal
 
 import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike
 from ..model.information import SINGULAR, inverse_information
 from ..model.radar_array import RadarArray
 from .extended_kalman import _measurements
@@ -59,7 +61,17 @@ class Start:
 
 
 @_checks.quiet
-def ml_start(z, array, sigma_f, T, box, likelihood="moving", *, at="first", workers=None):
+def ml_start(
+    z: ArrayLike,
+    array: RadarArray,
+    sigma_f: ArrayLike,
+    T: float,
+    box: tuple[ArrayLike, ArrayLike],
+    likelihood: Literal["moving", "static"] = "moving",
+    *,
+    at: Literal["first", "last"] = "first",
+    workers: int | None = None,
+) -> Start:
     """Estimate states from scratch: the global maximum of the likelihood in a box.
 
     Parameters

@@ -1,9 +1,12 @@
 """A radial velocity as a sequential update of a position filter, as a pseudo-measurement."""
 
+from typing import Literal
+
 import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike, FloatArray
 from . import gaussian
 
 
@@ -30,7 +33,12 @@ class RadialVelocity:
 
 
 @_checks.quiet
-def radial_velocity_terms(x, P, sigma, variance="corrected"):
+def radial_velocity_terms(
+    x: ArrayLike,
+    P: ArrayLike,
+    sigma: ArrayLike,
+    variance: Literal["corrected", "printed"] = "corrected",
+) -> RadialVelocity:
     """Return matrix, bias and variance with which a radial velocity updates a state.
 
     Parameters
@@ -84,7 +92,13 @@ def radial_velocity_terms(x, P, sigma, variance="corrected"):
 
 
 @_checks.quiet
-def radial_velocity_update(x, P, z, sigma, variance="corrected"):
+def radial_velocity_update(
+    x: ArrayLike,
+    P: ArrayLike,
+    z: ArrayLike,
+    sigma: ArrayLike,
+    variance: Literal["corrected", "printed"] = "corrected",
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return state and covariance after a measured radial velocity.
 
     Parameters

@@ -3,11 +3,14 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from . import gaussian
 
 
 @_checks.quiet
-def rts_smooth(x, P, F, Q):
+def rts_smooth(
+    x: ArrayLike, P: ArrayLike, F: ArrayLike, Q: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
     """Return the states given the whole record, from those that a Kalman filter returned.
 
     Parameters

@@ -5,11 +5,14 @@ import warnings
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from . import gaussian
 
 
 @_checks.quiet
-def steady_state_gain(F, Q, H, R):
+def steady_state_gain(
+    F: ArrayLike, Q: ArrayLike, H: ArrayLike, R: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
     """Return the gain and the covariance to which a Kalman filter settles.
 
     Parameters
@@ -73,7 +76,7 @@ def steady_state_gain(F, Q, H, R):
 
 
 @_checks.quiet
-def steady_state_lag(F, H, K, push):
+def steady_state_lag(F: ArrayLike, H: ArrayLike, K: ArrayLike, push: ArrayLike) -> FloatArray:
     """Return how far behind a filter of constant gain stays when the truth departs from its model.
 
     Parameters

@@ -3,12 +3,15 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ..model.doppler import doppler_jacobian
 from ..model.radar_array import RadarArray
 
 
 @_checks.quiet
-def best_velocity(z, array, sigma_f, p, in_plane=False):
+def best_velocity(
+    z: ArrayLike, array: RadarArray, sigma_f: ArrayLike, p: ArrayLike, in_plane: bool = False
+) -> tuple[FloatArray, FloatArray]:
     """Return the velocity that explains Doppler shifts best if the position is known.
 
     Parameters

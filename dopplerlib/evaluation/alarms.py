@@ -1,13 +1,19 @@
 """When the innovations alone raise an alarm: three tests, taken again and again as data come in."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, BoolArray, FloatArray
+from ..estimation.track import Track
 from ._innovations import chi2_tail, of_track, whiten
 from .whiteness import ljung_box
 
 
-def innovation_alarms(track, looks, probability=0.001, lags=5):
+def innovation_alarms(
+    track: Track, looks: Iterable[int], probability: float = 0.001, lags: int = 5
+) -> dict[str, BoolArray]:
     """Test after some numbers of samples whether the innovations are those of a right filter.
 
     None of the tests needs the truth.
@@ -65,7 +71,7 @@ def innovation_alarms(track, looks, probability=0.001, lags=5):
     return {name: np.stack(values, axis=-1) < threshold for name, values in p.items()}
 
 
-def first_alarm(alarms, looks):
+def first_alarm(alarms: ArrayLike, looks: Iterable[int]) -> FloatArray:
     """Return after how many samples each run raises its first alarm.
 
     Parameters

@@ -3,9 +3,10 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 
 
-def average_interval(dof, samples, confidence=0.95):
+def average_interval(dof: int, samples: float, confidence: float = 0.95) -> tuple[float, float]:
     """Return where the average of chi-square values lies that are worth `samples` independent ones.
 
     Parameters
@@ -53,7 +54,7 @@ def average_interval(dof, samples, confidence=0.95):
     return float(chi2.ppf(tail, total) / samples), float(chi2.isf(tail, total) / samples)
 
 
-def effective_samples(autocorrelation, samples):
+def effective_samples(autocorrelation: ArrayLike, samples: int) -> FloatArray:
     """Return how many independent values an average of correlated ones is worth.
 
     Parameters
@@ -102,7 +103,7 @@ def effective_samples(autocorrelation, samples):
     return samples / inflation
 
 
-def nees_samples(P, F, Q):
+def nees_samples(P: ArrayLike, F: ArrayLike, Q: ArrayLike) -> float:
     """Return how many independent values the time average of NEES of one right filter is worth.
 
     Parameters

@@ -1,9 +1,22 @@
 """How good an estimate can be at best: the Cramér-Rao lower bound."""
 
+from typing import Literal
+
+from .._typing import ArrayLike, FloatArray
 from ..model.information import fisher_information, inverse_information
+from ..model.radar_array import RadarArray
 
 
-def crlb(x, array, sigma_f, K=1, T=0.001, likelihood="static", *, free=None):
+def crlb(
+    x: ArrayLike,
+    array: RadarArray,
+    sigma_f: ArrayLike,
+    K: int = 1,
+    T: float = 0.001,
+    likelihood: Literal["static", "moving"] = "static",
+    *,
+    free: ArrayLike | None = None,
+) -> FloatArray:
     """Return the least covariance of an unbiased estimate of the state from K Doppler samples.
 
     Parameters

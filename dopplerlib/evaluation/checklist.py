@@ -1,10 +1,14 @@
 """What to test before believing a Doppler filter: eight checks that need nobody's word."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 from scipy.stats import chi2
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike, FloatArray
 from ..estimation.linear_kalman import kf_predict, kf_update
 from ..estimation.track import Track
 from ..kernels.doppler import doppler_shift as shift_kernel
@@ -53,13 +57,13 @@ class Check:
         _checks.one_number("limit", self.limit)
 
     @property
-    def passed(self):
+    def passed(self) -> bool:
         """Whether the filter passes; never if `value` is NaN."""
         good = self.value <= self.limit if self.kind == "exact" else self.value >= self.limit
         return bool(good)
 
 
-def complex_step_jacobian(x, array):
+def complex_step_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     """Return the derivative of the Doppler shifts by a complex step, without a formula for it.
 
     Parameters
@@ -87,12 +91,21 @@ def complex_step_jacobian(x, array):
     x = _checks.finite("x", x, (6,))
     check_clear_of_sensors("x", x, _checks.instance("array", array, RadarArray))
     x = x[..., None, None, :] + 1j * _STEP * np.eye(6)
-    return shift_kernel(
+    return shift_kernel(  # type: ignore[call-arg]  # four columns of the state and the sensors
         *np.moveaxis(x, -1, 0), *array.positions.T[:, :, None], array.doppler_per_speed
     ).imag / _STEP  # fmt: skip
 
 
-def filter_checklist(tracker, jacobian, scenario, *, rng, runs=200, samples=100, deviation=0.01):
+def filter_checklist(
+    tracker: Callable[..., Any],
+    jacobian: Callable[..., Any],
+    scenario: Scenario,
+    *,
+    rng: np.random.Generator,
+    runs: int = 200,
+    samples: int = 100,
+    deviation: float = 0.01,
+) -> tuple[Check, ...]:
     """Put a filter through eight checks, in a world that is as the filter believes it to be.
 
     Parameters

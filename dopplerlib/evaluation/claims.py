@@ -2,6 +2,7 @@
 
 from .. import _checks, _toml
 from .._records import record
+from .._typing import FileSource
 
 VERDICTS = ("reproduced", "typical", "atypical", "contradicted", "underdetermined")
 KINDS = ("deterministic", "random", "relation")
@@ -57,7 +58,7 @@ class Claim:
     note: str = ""
 
 
-def read_claims(path):
+def read_claims(path: FileSource) -> tuple[Claim, ...]:
     """Read the claims of a document.
 
     Parameters
@@ -79,7 +80,7 @@ def read_claims(path):
         return _toml.entries(file, "claim", Claim, check_claim)
 
 
-def check_claim(where, claim):
+def check_claim(where: str, claim: Claim) -> None:
     """Raise unless the fields of a claim are of the right kinds and fit each other."""
     for name in ("id", "where", "statement", "page", "cell", "test"):
         _checks.text(f"{name} of {where}", getattr(claim, name), least=1)

@@ -3,12 +3,14 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ..estimation import gaussian
+from ..estimation.imm import ImmTrack
 from ..estimation.track import Track
 from ._innovations import measured, whiten
 
 
-def nees(track, truth):
+def nees(track: Track | ImmTrack, truth: ArrayLike) -> FloatArray:
     """Return the normalized estimation error squared.
 
     Parameters
@@ -57,7 +59,7 @@ def nees(track, truth):
     return np.sum(whiten(error, P) ** 2, axis=-1)
 
 
-def estimates(track):
+def estimates(track: Track | ImmTrack) -> tuple[FloatArray, FloatArray]:
     """Return states and covariances of a track, or raise if it has none that can be judged."""
     if not (hasattr(track, "x") and hasattr(track, "P")):  # an ImmTrack has them as well
         _checks.instance("track", track, Track)
@@ -70,7 +72,7 @@ def estimates(track):
     return x, P
 
 
-def nis(innovation, S):
+def nis(innovation: ArrayLike, S: ArrayLike) -> FloatArray:
     """Return the normalized innovation squared.
 
     Parameters
@@ -106,7 +108,7 @@ def nis(innovation, S):
     return np.where(there.any(axis=-1), gaussian.quadratic_form(innovation, S), np.nan)[()]
 
 
-def chi2_interval(dof, runs=1, confidence=0.95):
+def chi2_interval(dof: int, runs: int = 1, confidence: float = 0.95) -> tuple[float, float]:
     """Return the interval in which a consistent filter's average NEES or NIS lies.
 
     Parameters

@@ -2,6 +2,7 @@
 
 from .. import _checks, _toml
 from .._records import record
+from .._typing import FileSource
 
 KINDS = ("gap", "contradiction", "misprint")
 
@@ -70,7 +71,7 @@ class Deviations:
         return "\n".join(head + [_row(one) for one in self.entries])
 
 
-def read_deviations(path):
+def read_deviations(path: FileSource) -> Deviations:
     """Read the deviations from a document.
 
     Parameters

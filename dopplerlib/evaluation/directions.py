@@ -3,9 +3,10 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 
 
-def errors_by_direction(error, P):
+def errors_by_direction(error: ArrayLike, P: ArrayLike) -> FloatArray:
     """Return the errors along the principal axes of their covariance, each in its deviations.
 
     Parameters

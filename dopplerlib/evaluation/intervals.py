@@ -4,6 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike
 
 
 @record
@@ -36,7 +37,7 @@ class Estimate:
             object.__setattr__(self, name, number)
 
     @property
-    def half_width(self):
+    def half_width(self) -> float:
         """Half the length of the interval: what stands after ± where it is nearly symmetric."""
         return (self.high - self.low) / 2
 
@@ -44,7 +45,7 @@ class Estimate:
         return f"{self.value:.3g} ({self.low:.3g} to {self.high:.3g})"
 
 
-def mean_interval(values, confidence=0.95):
+def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Estimate:
     """Estimate the mean of what independent runs are drawn from.
 
     Parameters
@@ -83,7 +84,7 @@ def mean_interval(values, confidence=0.95):
     return Estimate(*(float(end) * size for end in (mean, mean - half, mean + half)))
 
 
-def rms_interval(errors, confidence=0.95):
+def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> Estimate:
     """Estimate the root-mean-square error of what independent runs are drawn from.
 
     Parameters
@@ -118,7 +119,7 @@ def rms_interval(errors, confidence=0.95):
     return Estimate(*(max(end, 0.0) ** 0.5 * size for end in ends))
 
 
-def share_interval(hits, confidence=0.95):
+def share_interval(hits: ArrayLike, confidence: float = 0.95) -> Estimate:
     """Estimate the probability of an event from the runs in which it happened.
 
     Parameters
@@ -158,7 +159,7 @@ def share_interval(hits, confidence=0.95):
     return Estimate(k / n, float(low), float(high))
 
 
-def quantile_interval(values, q=0.5, confidence=0.95):
+def quantile_interval(values: ArrayLike, q: float = 0.5, confidence: float = 0.95) -> Estimate:
     """Estimate a quantile of what independent runs are drawn from: the median by default.
 
     Parameters

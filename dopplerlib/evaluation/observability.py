@@ -1,14 +1,26 @@
 """What an array can see of a state: how many directions, how well, and what it mistakes it for."""
 
+from typing import Literal
+
 import numpy as np
 from scipy.stats import norm
 
+from .._typing import ArrayLike, FloatArray, IntArray
 from ..estimation.maximum_likelihood import ml_start
 from ..model.doppler import doppler_shift
 from ..model.information import SINGULAR, fisher_information
+from ..model.radar_array import RadarArray
 
 
-def seen_directions(x, array, K=1, T=0.001, likelihood="static", *, free=None):
+def seen_directions(
+    x: ArrayLike,
+    array: RadarArray,
+    K: int = 1,
+    T: float = 0.001,
+    likelihood: Literal["static", "moving"] = "static",
+    *,
+    free: ArrayLike | None = None,
+) -> IntArray:
     """Return the rank of the Fisher information: how many components are seen to first order.
 
     Parameters
@@ -52,7 +64,9 @@ def seen_directions(x, array, K=1, T=0.001, likelihood="static", *, free=None):
     return np.sum(eigenvalue > SINGULAR, axis=-1)
 
 
-def rms_bounds(P, x=None):
+def rms_bounds(
+    P: ArrayLike, x: ArrayLike | None = None
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the root mean square errors of position, velocity and range that `P` stands for.
 
     Parameters
@@ -84,7 +98,15 @@ def rms_bounds(P, x=None):
     return *bounds, np.sqrt(np.where(reached, np.inf, square))
 
 
-def confusion(x, array, sigma_f, K, T, box, likelihood="moving"):
+def confusion(
+    x: ArrayLike,
+    array: RadarArray,
+    sigma_f: float,
+    K: int,
+    T: float,
+    box: tuple[ArrayLike, ArrayLike],
+    likelihood: Literal["static", "moving"] = "moving",
+) -> tuple[FloatArray, float]:
     """Return the second-best explanation of noise-free measurements, and how often it wins.
 
     Parameters

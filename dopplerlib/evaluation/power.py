@@ -4,6 +4,8 @@ import numpy as np
 from scipy.stats import chi2, norm
 
 from .. import _checks
+from .._typing import ArrayLike, BoolArray
+from ..estimation.track import Track
 from ._innovations import of_track
 from .averages import nees_samples
 from .consistency import nees
@@ -19,7 +21,16 @@ TESTS = (
 )
 
 
-def rejections(track, truth, F, Q, *, confidence=0.95, lags=20, group=20):
+def rejections(
+    track: Track,
+    truth: ArrayLike,
+    F: ArrayLike,
+    Q: ArrayLike,
+    *,
+    confidence: float = 0.95,
+    lags: int = 20,
+    group: int = 20,
+) -> dict[str, BoolArray]:
     """Return which records of a linear filter fail each test of consistency.
 
     Parameters

@@ -3,11 +3,12 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ..model.information import inverse_information
 from ..model.range_rate import range_rate_jacobian
 
 
-def range_crlb(p, sensors, sigma):
+def range_crlb(p: ArrayLike, sensors: ArrayLike, sigma: ArrayLike) -> FloatArray:
     """Return the least covariance of an unbiased position estimate from one range per radar.
 
     Parameters

@@ -34,7 +34,7 @@ class Scorecard:
         object.__setattr__(self, "judgments", judgments)
 
     @property
-    def counts(self):
+    def counts(self) -> dict[str, int]:
         """Number of claims by verdict, in the order of the verdicts."""
         counts = Counter(one.verdict for one in self.judgments)
         return {verdict: counts[verdict] for verdict in VERDICTS if counts[verdict]}

@@ -42,7 +42,7 @@ class Table:
 
     rows: dict
     columns: tuple
-    digits: tuple = 2
+    digits: int | tuple = 2
     corner: str = ""
 
     def __post_init__(self):
@@ -60,7 +60,7 @@ class Table:
             object.__setattr__(self, name, value)
 
     @property
-    def cells(self):
+    def cells(self) -> list[list[str]]:
         """Texts of the table, a list of rows: the head first, the labels in front."""
         body = [
             [label, *(_text(*one) for one in zip(values, self.digits, strict=True))]

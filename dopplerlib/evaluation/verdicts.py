@@ -1,11 +1,14 @@
 """The verdict on a claim: what the document says beside what we find."""
 
+from collections.abc import Iterable
 from reprlib import repr as short
+from typing import Any
 
 import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike
 from .claims import Claim, check_claim
 from .intervals import Estimate, share_interval
 
@@ -75,7 +78,7 @@ class Judgment:
     decided: bool = True
 
 
-def judge(claim, evidence):
+def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
     """Compare a claim with the evidence.
 
     Parameters
@@ -142,7 +145,7 @@ def judge(claim, evidence):
     return Judgment(claim, verdict, ours if ours.ndim else float(ours), published)
 
 
-def judge_all(claims, evidence):
+def judge_all(claims: Iterable[Claim], evidence: dict[str, Any]) -> tuple[Judgment, ...]:
     """Compare all claims of a document with the evidence.
 
     Parameters

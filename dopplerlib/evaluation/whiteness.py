@@ -4,6 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike, BoolArray, FloatArray
 from ._innovations import chi2_tail, measured, whiten
 
 
@@ -31,7 +32,7 @@ class Whiteness:
     p_value: np.ndarray
 
 
-def innovation_mean(innovation, S):
+def innovation_mean(innovation: ArrayLike, S: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Return the time average of each innovation and its standard error if the filter is right.
 
     Parameters
@@ -76,7 +77,7 @@ def innovation_mean(innovation, S):
     return np.where(known, mean, np.nan), np.where(known, error, np.nan)
 
 
-def innovation_whiteness(innovation, S, lags=20):
+def innovation_whiteness(innovation: ArrayLike, S: ArrayLike, lags: int = 20) -> Whiteness:
     """Test whether innovations are uncorrelated in time.
 
     Parameters
@@ -124,7 +125,9 @@ def innovation_whiteness(innovation, S, lags=20):
     return ljung_box(whiten(innovation, S), there, lags)
 
 
-def ljung_box(white, there, lags, least=None):
+def ljung_box(
+    white: FloatArray, there: BoolArray, lags: int, least: int | None = None
+) -> Whiteness:
     """Return the test of `innovation_whiteness` for values of variance 1; nothing is checked.
 
     Parameters

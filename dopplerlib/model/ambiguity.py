@@ -3,9 +3,10 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 
 
-def ring_family(x, radius, t):
+def ring_family(x: ArrayLike, radius: float, t: ArrayLike) -> FloatArray:
     """Return states with the same Doppler shifts at every sensor of a ring.
 
     Parameters
@@ -55,7 +56,7 @@ def ring_family(x, radius, t):
     return np.concatenate([ahead[..., None], across, ahead_v[..., None], across_v], axis=-1)
 
 
-def ring_family_limits(x, radius):
+def ring_family_limits(x: ArrayLike, radius: float) -> tuple[FloatArray, FloatArray]:
     """Return the ends of the family of `ring_family`, where it meets the plane of the ring.
 
     Parameters
@@ -95,7 +96,7 @@ def ring_family_limits(x, radius):
         return np.sqrt(2 * radius**2 / larger), np.sqrt(larger / (2 * across))
 
 
-def ring_family_direction(x, radius):
+def ring_family_direction(x: ArrayLike, radius: float) -> FloatArray:
     """Return the derivative of `ring_family` by t at t = 1: the direction that a ring cannot see.
 
     Parameters

@@ -3,11 +3,12 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ..kernels import doppler as kernel
 from .radar_array import RadarArray
 
 
-def doppler_shift(x, array):
+def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
     """Return the Doppler shift that every sensor sees.
 
     Parameters
@@ -42,7 +43,7 @@ def doppler_shift(x, array):
     return kernel.doppler_shift(*_arguments(x, array))
 
 
-def doppler_jacobian(x, array):
+def doppler_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     """Return the derivative of every sensor's Doppler shift with respect to the state.
 
     Parameters
@@ -76,7 +77,7 @@ def doppler_jacobian(x, array):
     return np.stack(gradient, axis=-1)
 
 
-def check_clear_of_sensors(name, x, array):
+def check_clear_of_sensors(name: str, x: FloatArray, array: RadarArray) -> None:
     """Raise if a position in `x`, shape (..., 6), is that of a sensor. `x` itself is unchecked."""
     d = x[..., None, :3] - array.positions
     # Not a comparison for equality: the square of less than 1e-162 m is zero as well.

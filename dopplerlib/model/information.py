@@ -1,8 +1,11 @@
 """What the measurements say about a state: Fisher information and its inverse."""
 
+from typing import Literal
+
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, BoolArray, FloatArray
 from .doppler import doppler_jacobian
 from .radar_array import RadarArray
 
@@ -12,7 +15,14 @@ from .radar_array import RadarArray
 SINGULAR = 1e-13
 
 
-def fisher_information(x, array, sigma_f, K=1, T=0.001, likelihood="static"):
+def fisher_information(
+    x: ArrayLike,
+    array: RadarArray,
+    sigma_f: ArrayLike,
+    K: int = 1,
+    T: float = 0.001,
+    likelihood: Literal["static", "moving"] = "static",
+) -> FloatArray:
     """Return the Fisher information of K Doppler samples about the state at the first of them.
 
     Parameters
@@ -76,7 +86,9 @@ def fisher_information(x, array, sigma_f, K=1, T=0.001, likelihood="static"):
     return information
 
 
-def inverse_information(information, free=None):
+def inverse_information(
+    information: ArrayLike, free: ArrayLike | None = None
+) -> tuple[FloatArray, BoolArray]:
     """Return the covariance that an information matrix allows, infinite where it says nothing.
 
     Parameters
@@ -123,4 +135,4 @@ def inverse_information(information, free=None):
     P = np.where(lost[..., :, None] | lost[..., None, :], np.nan, P)
     P = np.where(lost[..., :, None] & np.eye(lost.shape[-1], dtype=bool), np.inf, P)
     covariance[..., *block] = P
-    return covariance, ~null.any(axis=-1)
+    return covariance, np.asarray(~null.any(axis=-1))

@@ -1,15 +1,19 @@
 """Targets that nearly keep a velocity or an acceleration, in any number of dimensions."""
 
 from math import factorial
+from typing import Literal
 
 import numpy as np
 
 from .. import _checks
+from .._typing import FloatArray
 
 ORDERS = ("axis", "derivative")
 
 
-def ncv_transition(T, dim=2, order="axis"):
+def ncv_transition(
+    T: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
     """Return the transition matrix of constant velocity.
 
     Parameters
@@ -45,7 +49,9 @@ def ncv_transition(T, dim=2, order="axis"):
     return _all_axes(_integrators(_interval(T), 2), dim, order)
 
 
-def nca_transition(T, dim=2, order="axis"):
+def nca_transition(
+    T: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
     """Return the transition matrix of constant acceleration.
 
     Parameters
@@ -78,7 +84,9 @@ def nca_transition(T, dim=2, order="axis"):
     return _all_axes(_integrators(_interval(T), 3), dim, order)
 
 
-def wna_process_noise(T, q, dim=2, order="axis"):
+def wna_process_noise(
+    T: float, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
     """Return the process noise of white-noise acceleration over one interval.
 
     Parameters
@@ -112,7 +120,9 @@ def wna_process_noise(T, q, dim=2, order="axis"):
     return _white_noise(T, q, 2, dim, order)
 
 
-def wnj_process_noise(T, q, dim=2, order="axis"):
+def wnj_process_noise(
+    T: float, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
     """Return the process noise of white-noise jerk over one interval.
 
     Parameters
@@ -145,7 +155,9 @@ def wnj_process_noise(T, q, dim=2, order="axis"):
     return _white_noise(T, q, 3, dim, order)
 
 
-def velocity_step_noise(w, dim=2, order="axis"):
+def velocity_step_noise(
+    w: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
     """Return a process noise that acts on the velocities alone, once a step.
 
     Parameters

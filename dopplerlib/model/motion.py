@@ -1,11 +1,16 @@
 """How a target moves between two samples."""
 
+from typing import Literal
+
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 
 
-def constant_velocity(T, sigma_p, noise="common"):
+def constant_velocity(
+    T: ArrayLike, sigma_p: float, noise: Literal["common", "independent"] = "common"
+) -> tuple[FloatArray, FloatArray]:
     """Return the transition matrix and process-noise covariance of the constant-velocity model.
 
     Parameters

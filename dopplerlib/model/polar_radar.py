@@ -3,9 +3,10 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 
 
-def polar_radar_h(x):
+def polar_radar_h(x: ArrayLike) -> FloatArray:
     """Return range, azimuth and range rate of targets, seen from the origin.
 
     Parameters
@@ -40,7 +41,7 @@ def polar_radar_h(x):
     return np.stack([r, np.arctan2(p_x, p_y), (p_x * v_x + p_y * v_y) / r], axis=-1)
 
 
-def polar_radar_jacobian(x):
+def polar_radar_jacobian(x: ArrayLike) -> FloatArray:
     """Return the Jacobian of `polar_radar_h`.
 
     Parameters
@@ -80,7 +81,7 @@ def polar_radar_jacobian(x):
     return H
 
 
-def polar_position(z):
+def polar_position(z: ArrayLike) -> FloatArray:
     """Return the position that a range and an azimuth stand for.
 
     Parameters

@@ -1,9 +1,12 @@
 """Where the sensors are, and the wavelength they use."""
 
+from typing import TYPE_CHECKING, Literal
+
 import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 
@@ -38,6 +41,10 @@ class RadarArray:
     positions: np.ndarray
     wavelength: float = 0.0125
 
+    if TYPE_CHECKING:  # what a field holds is an array, what makes it need not be
+
+        def __init__(self, positions: ArrayLike, wavelength: float = 0.0125) -> None: ...
+
     def __post_init__(self):
         """Check the fields."""
         positions = _checks.finite("positions", self.positions, (None, 3)).copy()
@@ -55,12 +62,19 @@ class RadarArray:
         return len(self.positions)
 
     @property
-    def doppler_per_speed(self):
+    def doppler_per_speed(self) -> float:
         """Doppler shift of a radial speed of 1 m/s, which is 2 / wavelength, in Hz per m/s."""
         return 2 / self.wavelength
 
     @classmethod
-    def ring(cls, n, radius, phase=0.0, normal="x", wavelength=0.0125):
+    def ring(
+        cls,
+        n: int,
+        radius: float,
+        phase: float = 0.0,
+        normal: Literal["x", "y", "z"] = "x",
+        wavelength: float = 0.0125,
+    ) -> "RadarArray":
         """Return `n` sensors at equal angles on a circle about the origin.
 
         Parameters
@@ -98,7 +112,9 @@ class RadarArray:
         return cls(positions, wavelength)
 
     @classmethod
-    def linear(cls, n, length, axis="y", wavelength=0.0125):
+    def linear(
+        cls, n: int, length: float, axis: Literal["x", "y", "z"] = "y", wavelength: float = 0.0125
+    ) -> "RadarArray":
         """Return `n` sensors at equal distances on a line through the origin, its center.
 
         Parameters

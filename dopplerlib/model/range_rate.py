@@ -3,9 +3,10 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 
 
-def range_rate(x, sensors):
+def range_rate(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     """Return the range and the range rate that every radar measures.
 
     Parameters
@@ -40,7 +41,7 @@ def range_rate(x, sensors):
     return np.stack([d, np.einsum("...i,...i->...", u, v)], axis=-1)
 
 
-def range_rate_jacobian(x, sensors):
+def range_rate_jacobian(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     """Return the derivative of `range_rate` with respect to the state.
 
     Parameters

@@ -3,9 +3,10 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 
 
-def linear_snr(d, at_zero, slope):
+def linear_snr(d: ArrayLike, at_zero: float, slope: float) -> FloatArray:
     """Return a signal-to-noise ratio whose decibels fall linearly with the range.
 
     Parameters
@@ -41,7 +42,7 @@ def linear_snr(d, at_zero, slope):
     return _checks.one_number("at_zero", at_zero) - d * _checks.one_number("slope", slope)
 
 
-def fourth_power_snr(d, at_one):
+def fourth_power_snr(d: ArrayLike, at_one: float) -> FloatArray:
     """Return the signal-to-noise ratio of the radar equation: 12 dB lost per doubling of range.
 
     Parameters
@@ -73,7 +74,7 @@ def fourth_power_snr(d, at_one):
     return _checks.one_number("at_one", at_one) - 40 * np.log10(_checks.positive("d", d))
 
 
-def resolution_deviation(resolution, snr_db):
+def resolution_deviation(resolution: float, snr_db: ArrayLike) -> FloatArray:
     """Return the standard deviation of a measurement that resolves `resolution`.
 
     Parameters
@@ -108,7 +109,7 @@ def resolution_deviation(resolution, snr_db):
     return resolution / np.sqrt(2 * 10 ** (_checks.finite("snr_db", snr_db) / 10))
 
 
-def detection_probability(snr_db, false_alarm):
+def detection_probability(snr_db: ArrayLike, false_alarm: float) -> FloatArray:
     """Return the chance that one steady echo passes a threshold.
 
     Parameters

@@ -1,11 +1,13 @@
 """A scenario: sensors, a target's path, and how it is sampled, as a file describes them."""
 
 from inspect import signature
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .. import _checks, _toml
 from .._records import record
+from .._typing import ArrayLike, FileSource, FloatArray
 from .doppler import check_clear_of_sensors
 from .radar_array import RadarArray
 
@@ -64,6 +66,19 @@ class Scenario:
     sigma_p: float
     P0: np.ndarray
 
+    if TYPE_CHECKING:  # what a field holds is an array, what makes it need not be
+
+        def __init__(
+            self,
+            array: RadarArray,
+            x0: ArrayLike,
+            T: float,
+            samples: int,
+            sigma_f: float,
+            sigma_p: float,
+            P0: ArrayLike,
+        ) -> None: ...
+
     def __post_init__(self):
         """Check the fields."""
         x0 = _checks.finite("x0", self.x0, (6,)).copy()
@@ -80,19 +95,19 @@ class Scenario:
             object.__setattr__(self, name, _checks.positive_number(name, getattr(self, name)))
 
     @property
-    def time(self):
+    def time(self) -> FloatArray:
         """Time of each sample in s, shape (K,); the first is 0."""
         return np.arange(self.samples) * self.T
 
     @property
-    def truth(self):
+    def truth(self) -> FloatArray:
         """True states at the samples, shape (K, 6), on a straight path at constant velocity."""
         path = np.tile(self.x0, (self.samples, 1))
         path[:, :3] += self.time[:, None] * self.x0[3:]
         return path
 
     @classmethod
-    def from_toml(cls, path):
+    def from_toml(cls, path: FileSource) -> "Scenario":
         """Read a scenario from a TOML file.
 
         Parameters

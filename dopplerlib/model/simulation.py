@@ -3,10 +3,14 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import FloatArray
 from .doppler import doppler_shift
+from .scenario import Scenario
 
 
-def simulate(scenario, runs, *, rng):
+def simulate(
+    scenario: Scenario, runs: int, *, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
     """Return the true path and noisy Doppler measurements of it.
 
     Parameters

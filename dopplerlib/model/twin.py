@@ -3,9 +3,10 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 
 
-def planar_twin(x):
+def planar_twin(x: ArrayLike) -> FloatArray:
     """Return the state whose Doppler shifts nearly equal those of `x` at any array in x = 0.
 
     Parameters

@@ -19,7 +19,7 @@ class Piece(NamedTuple):
 
     at: int  # in the recording
     row: int | None  # in the file; None: a gap
-    count: int
+    count: int  # type: ignore[assignment]  # hides tuple.count
 
 
 def parsed(text):

@@ -1,8 +1,11 @@
 """A tone's frequency by maximum likelihood: alone, or together with a constant."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy.fft
 
+from .._typing import ArrayLike, ComplexArray, FloatArray, IntArray
 from ._bins import about_mean, limits, samples, sum_of_ones
 
 _CHUNK = 128  # transforms at a time: these stay in the processor's cache
@@ -11,7 +14,7 @@ _STEPS = 60
 _NEAREST = 1e-3  # bins from the constant: nearer than that a tone cannot be told from it
 
 
-def ml_frequency(x, fs, band=None):
+def ml_frequency(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the frequency at which the periodogram is highest.
 
     For one tone in white noise this is the maximum of the likelihood, amplitude and phase
@@ -58,7 +61,14 @@ def ml_frequency(x, fs, band=None):
     return f.reshape(x.shape[:-1])
 
 
-def peaks(x, rows, firsts, n, fs, band):
+def peaks(
+    x: ComplexArray,
+    rows: IntArray,
+    firsts: IntArray,
+    n: int,
+    fs: float,
+    band: Sequence[float] | None,
+) -> tuple[FloatArray, FloatArray]:
     """Return frequency and power of the highest peak in each of many windows, unchecked.
 
     Parameters
@@ -100,7 +110,7 @@ def peaks(x, rows, firsts, n, fs, band):
     return f * (fs / n), power
 
 
-def ml_frequency_dc(x, fs, band=None):
+def ml_frequency_dc(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the frequency of a tone beside an unknown constant, by maximum likelihood.
 
     Parameters

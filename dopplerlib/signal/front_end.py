@@ -1,9 +1,10 @@
 """The digital low-pass, and the rate that is enough after it."""
 
 from .. import _checks
+from .._typing import ArrayLike, ComplexArray
 
 
-def lowpass(x, fs, cutoff, taps):
+def lowpass(x: ArrayLike, fs: float, cutoff: float, taps: int) -> tuple[ComplexArray, float]:
     """Return IQ samples after a low-pass of linear phase, and by how much it delays them.
 
     Parameters
@@ -55,7 +56,9 @@ def lowpass(x, fs, cutoff, taps):
     return y[..., : x.shape[-1]], (taps - 1) / 2 / fs
 
 
-def lowpass_decimate(x, fs, factor, taps=None):
+def lowpass_decimate(
+    x: ArrayLike, fs: float, factor: int, taps: int | None = None
+) -> tuple[ComplexArray, float, float]:
     """Return IQ samples at a lower rate, low-passed before, and by how much they are delayed.
 
     Parameters

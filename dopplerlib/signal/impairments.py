@@ -3,10 +3,11 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, ComplexArray
 from ._bins import about_mean
 
 
-def add_dc(x, offset):
+def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     """Return IQ samples with a constant added, as leakage of the carrier adds it.
 
     Parameters
@@ -34,7 +35,7 @@ def add_dc(x, offset):
     return x + _checks.finite_complex("offset", offset)
 
 
-def remove_mean(x):
+def remove_mean(x: ArrayLike) -> ComplexArray:
     """Return IQ samples less their mean over the last axis.
 
     The mean of a tone is not zero unless the record holds whole cycles of it: this takes part of a
@@ -63,7 +64,7 @@ def remove_mean(x):
     return about_mean(x)
 
 
-def add_iq_imbalance(x, gain_db, phase_deg):
+def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexArray:
     """Return IQ samples of a mixer whose branches differ.
 
     Parameters
@@ -96,7 +97,7 @@ def add_iq_imbalance(x, gain_db, phase_deg):
     return x.real + 1j * g * (x.imag * np.cos(phi) + x.real * np.sin(phi))
 
 
-def image_rejection(gain_db, phase_deg):
+def image_rejection(gain_db: float, phase_deg: float) -> float:
     """Return the power of a tone over that of its mirror image.
 
     Parameters
@@ -125,7 +126,7 @@ def image_rejection(gain_db, phase_deg):
         return float(np.float64(kept) ** 2 / mirrored**2)
 
 
-def correct_iq_imbalance(x):
+def correct_iq_imbalance(x: ArrayLike) -> ComplexArray:
     """Return IQ samples with branches of equal power and at right angles.
 
     Gain and angle are found from the samples themselves: in those of an ideal mixer I and Q have
@@ -172,7 +173,7 @@ def correct_iq_imbalance(x):
     return x.real + 1j * (ii * x.imag - iq * x.real) / np.sqrt(np.where(dead, 1.0, left))
 
 
-def quantize(x, bits, full_scale):
+def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
     """Return IQ samples as a converter with a limited number of bits gives them.
 
     Parameters

@@ -5,13 +5,19 @@ approaches. They look for the highest bin in the ``band``, (lowest, highest) in 
 -fs/2 to fs/2. A band from 0 to fs is as good, for targets that only approach.
 """
 
+from collections.abc import Sequence
+from typing import Literal
+
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ._bins import transform
 
 
-def peak_bin(x, fs, band=None, nfft=None):
+def peak_bin(
+    x: ArrayLike, fs: float, band: Sequence[float] | None = None, nfft: int | None = None
+) -> FloatArray:
     """Return the frequency of the highest bin.
 
     Parameters
@@ -46,7 +52,13 @@ def peak_bin(x, fs, band=None, nfft=None):
     return bins.hertz(bins.peak())
 
 
-def parabolic(x, fs, band=None, nfft=None, scale="magnitude"):
+def parabolic(
+    x: ArrayLike,
+    fs: float,
+    band: Sequence[float] | None = None,
+    nfft: int | None = None,
+    scale: Literal["magnitude", "log"] = "magnitude",
+) -> FloatArray:
     """Return the vertex of the parabola through the highest bin and its two neighbors.
 
     Parameters
@@ -84,7 +96,9 @@ def parabolic(x, fs, band=None, nfft=None, scale="magnitude"):
     return bins.hertz(k + (y[0] - y[2]) / (2 * (y[0] - 2 * y[1] + y[2])))
 
 
-def parabolic_three_highest(x, fs, band=None, nfft=None):
+def parabolic_three_highest(
+    x: ArrayLike, fs: float, band: Sequence[float] | None = None, nfft: int | None = None
+) -> FloatArray:
     """Return the vertex of the parabola through the three highest bins, wherever they are.
 
     For comparison only: without padding the third highest bin is often no neighbor of the
@@ -131,7 +145,7 @@ def parabolic_three_highest(x, fs, band=None, nfft=None):
         return (k0 + (k1 - k0) / 2 - first / (2 * second)) * bins.fs / bins.nfft
 
 
-def jacobsen(x, fs, band=None):
+def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the estimate of Jacobsen and Kootsookos from three complex bins.
 
     Parameters
@@ -165,7 +179,7 @@ def jacobsen(x, fs, band=None):
     return bins.hertz(k + _jacobsen(bins, k))
 
 
-def candan(x, fs, band=None):
+def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the estimate of `jacobsen` without its bias for short windows.
 
     Parameters
@@ -199,7 +213,7 @@ def candan(x, fs, band=None):
     return bins.hertz(k + _jacobsen(bins, k) * np.tan(np.pi / bins.n) * bins.n / np.pi)
 
 
-def quinn1(x, fs, band=None):
+def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Quinn's first estimate: from the highest bin and the neighbor on the tone's side.
 
     Parameters
@@ -234,7 +248,7 @@ def quinn1(x, fs, band=None):
     return bins.hertz(k + np.where((left > 0) & (right > 0), right, left))
 
 
-def quinn2(x, fs, band=None):
+def quinn2(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Quinn's second estimate, which weights both neighbors.
 
     Parameters
@@ -269,7 +283,9 @@ def quinn2(x, fs, band=None):
     return bins.hertz(k + (left + right) / 2 + _kappa(right**2) - _kappa(left**2))
 
 
-def aboutanios_mulgrew(x, fs, band=None, iterations=2):
+def aboutanios_mulgrew(
+    x: ArrayLike, fs: float, band: Sequence[float] | None = None, iterations: int = 2
+) -> FloatArray:
     """Return the estimate that compares the power half a bin to the left and to the right.
 
     Parameters

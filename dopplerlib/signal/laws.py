@@ -3,13 +3,14 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ._bins import sum_of_ones
 
 # The variance of a frequency estimate from a window of length T is VARIANCE / (cn0 T^3).
 _VARIANCE = 6 / (2 * np.pi) ** 2
 
 
-def crlb_frequency_std(snr, n, fs):
+def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: float) -> FloatArray:
     """Return the smallest standard deviation of an unbiased estimate of a tone's frequency.
 
     Parameters
@@ -47,7 +48,7 @@ def crlb_frequency_std(snr, n, fs):
     return _checks.positive_number("fs", fs) * np.sqrt(_VARIANCE / (snr * n * (n**2 - 1)))
 
 
-def crlb_frequency_std_dc(f, snr, n, fs):
+def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> FloatArray:
     """Return the smallest standard deviation of such an estimate beside an unknown constant.
 
     Parameters
@@ -96,7 +97,7 @@ def crlb_frequency_std_dc(f, snr, n, fs):
     return crlb_frequency_std(snr, n, fs) * factor
 
 
-def window_for_std(std, cn0):
+def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
     """Return the length of the window in which a tone's frequency can be known so well.
 
     Parameters
@@ -129,7 +130,7 @@ def window_for_std(std, cn0):
     return np.cbrt(_VARIANCE / (cn0 * std**2))
 
 
-def integrated_snr_for_std(std, T):
+def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
     """Return the signal-to-noise ratio of a whole window that such an estimate needs.
 
     Parameters
@@ -162,7 +163,7 @@ def integrated_snr_for_std(std, T):
     return _VARIANCE / (std * T) ** 2
 
 
-def outlier_probability(integrated_snr, candidates):
+def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatArray:
     """Return how often noise makes a higher peak than the tone does.
 
     Parameters
@@ -207,7 +208,7 @@ def outlier_probability(integrated_snr, candidates):
     return np.sum(weight * density * beaten, axis=-1) * (high - low)[..., 0] / 2
 
 
-def overlap_correlation(tau):
+def overlap_correlation(tau: ArrayLike) -> FloatArray:
     """Return the correlation of the errors of two overlapping windows.
 
     Parameters
@@ -236,7 +237,7 @@ def overlap_correlation(tau):
     return np.where(tau < 1, 1 - 3 * tau + 2 * tau**3, 0.0)
 
 
-def overlap_correlation_discrete(n, lag):
+def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
     """Return the correlation of the errors of two overlapping windows of n samples.
 
     Parameters
@@ -273,7 +274,7 @@ def overlap_correlation_discrete(n, lag):
     return products / (n * (n**2 - 1))
 
 
-def optimal_window_end(cn0, chirp):
+def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
     """Return the best length of a window whose estimate is used as the frequency at its end.
 
     Parameters
@@ -307,7 +308,7 @@ def optimal_window_end(cn0, chirp):
     return (6 * _VARIANCE / (cn0 * chirp**2)) ** (1 / 5)
 
 
-def optimal_window_center(cn0, curvature):
+def optimal_window_center(cn0: ArrayLike, curvature: ArrayLike) -> FloatArray:
     """Return the best length of a window whose estimate is used as the frequency at its middle.
 
     Parameters

@@ -1,12 +1,15 @@
 """A tone's frequency from how the phase turns between samples, without any spectrum."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ._bins import limits, samples
 
 
-def kay(x, fs, band=None):
+def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the weighted mean of the phase steps between neighboring samples.
 
     Parameters
@@ -50,7 +53,9 @@ def kay(x, fs, band=None):
     return middle + np.angle(steps) @ weights * fs / (2 * np.pi)
 
 
-def pulse_pair(x, fs, band=None, lag=1):
+def pulse_pair(
+    x: ArrayLike, fs: float, band: Sequence[float] | None = None, lag: int = 1
+) -> FloatArray:
     """Return the phase of the autocorrelation at one lag, as a frequency.
 
     Parameters

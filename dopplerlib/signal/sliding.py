@@ -1,9 +1,13 @@
 """From a record of IQ samples to a record of Doppler shifts, each with the time it belongs to."""
 
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
+
 import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike, FloatArray
 from ._bins import about_mean, sum_of_ones
 from .frequency import ml_frequency, ml_frequency_dc, peaks
 from .laws import crlb_frequency_std, crlb_frequency_std_dc
@@ -50,7 +54,7 @@ class DopplerRecord:
     beside_constant: bool = False
 
     @property
-    def snr(self):
+    def snr(self) -> FloatArray:
         """Measured signal-to-noise ratio of a sample, not in dB, shape (..., K, S).
 
         Without bias for a tone well above the noise: the power that noise adds at the peak is taken
@@ -66,7 +70,7 @@ class DopplerRecord:
         return np.where(self.amp2 > 0, ratio, 0.0)
 
     @property
-    def frequency_std(self):
+    def frequency_std(self) -> FloatArray:
         """Standard deviation of each frequency in Hz, if it reaches the bound at `snr`.
 
         Infinite where `snr` is not positive: no such window tells a frequency. It knows nothing of
@@ -82,7 +86,7 @@ class DopplerRecord:
             bound = crlb_frequency_std(some, self.window, self.fs)
         return np.where(usual, bound, np.where(snr > 0, 0.0, np.inf))
 
-    def measurements(self):
+    def measurements(self) -> tuple[FloatArray, FloatArray]:
         """Return frequencies and their deviations as `ekf` and `ml_start` take them.
 
         Returns
@@ -106,7 +110,16 @@ class DopplerRecord:
             return n - sum_of_ones(self.frequency * n / self.fs, n)[0] ** 2 / n
 
 
-def sliding_doppler(x, fs, window, hop, estimator=ml_frequency, *, band=None, tag="center"):
+def sliding_doppler(
+    x: ArrayLike,
+    fs: float,
+    window: int,
+    hop: int,
+    estimator: Callable[..., Any] = ml_frequency,
+    *,
+    band: Sequence[float] | None = None,
+    tag: Literal["center", "end", "start"] = "center",
+) -> DopplerRecord:
     """Return the Doppler shifts in windows that slide over IQ samples.
 
     Parameters

@@ -1,15 +1,21 @@
 """IQ samples of moving targets: a tone, a course of velocity, or a path before an array."""
 
+from collections.abc import Sequence
+from typing import Literal
+
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, ComplexArray, FloatArray
 from ..model.doppler import check_clear_of_sensors
 from ..model.radar_array import RadarArray
 
 _AMPLITUDES = {"constant": 0, "r^-2": -2}
 
 
-def velocity_profile(t, v0, segments):
+def velocity_profile(
+    t: ArrayLike, v0: float, segments: Sequence[tuple[float, float, float]]
+) -> tuple[FloatArray, FloatArray]:
     """Return a velocity that is accelerated during some intervals and constant otherwise.
 
     Parameters
@@ -54,7 +60,9 @@ def velocity_profile(t, v0, segments):
     return v, a
 
 
-def complex_noise(shape, variance, *, rng):
+def complex_noise(
+    shape: int | tuple[int, ...], variance: float, *, rng: np.random.Generator
+) -> ComplexArray:
     """Return circular white Gaussian noise.
 
     Parameters
@@ -90,7 +98,15 @@ def complex_noise(shape, variance, *, rng):
     return noise
 
 
-def tone(f, fs, n, snr_db, *, rng, chirp=0.0):
+def tone(
+    f: ArrayLike,
+    fs: float,
+    n: int,
+    snr_db: float | None,
+    *,
+    rng: np.random.Generator,
+    chirp: ArrayLike = 0.0,
+) -> ComplexArray:
     """Return tones of amplitude 1 and random phase in white noise.
 
     Parameters
@@ -132,7 +148,15 @@ def tone(f, fs, n, snr_db, *, rng, chirp=0.0):
     return _signal(cycles, 1.0, snr_db, rng)
 
 
-def iq_from_velocity(v, T, wavelength, snr_db, *, rng, size=None):
+def iq_from_velocity(
+    v: ArrayLike,
+    T: float,
+    wavelength: float,
+    snr_db: float | None,
+    *,
+    rng: np.random.Generator,
+    size: int | None = None,
+) -> ComplexArray:
     """Return what one sensor sees of a target whose radial velocity is known.
 
     Parameters
@@ -176,7 +200,15 @@ def iq_from_velocity(v, T, wavelength, snr_db, *, rng, size=None):
     return _signal(cycles, 1.0, snr_db, rng, size)
 
 
-def iq_from_geometry(position, array, snr_db, *, rng, amplitude="constant", size=None):
+def iq_from_geometry(
+    position: ArrayLike,
+    array: RadarArray,
+    snr_db: float | None,
+    *,
+    rng: np.random.Generator,
+    amplitude: Literal["constant", "r^-2"] = "constant",
+    size: int | None = None,
+) -> ComplexArray:
     """Return what every sensor of an array sees of a target on a path.
 
     Parameters

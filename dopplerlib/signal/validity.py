@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, BoolArray
 
 # A block of so many samples stands still if it moves less than this share of the module's noise.
 _STILL = ((32, 0.01), (128, 0.1))
@@ -18,7 +19,13 @@ _ODDS = 0.8  # of the two highest codes, the share of the highest: for a pure to
 _AT_ONCE = 2**20  # samples
 
 
-def valid_samples(x, *, full_scale=None, longest_run=None, false_alarm=1e-9):
+def valid_samples(
+    x: ArrayLike,
+    *,
+    full_scale: float | None = None,
+    longest_run: int | None = None,
+    false_alarm: float = 1e-9,
+) -> BoolArray:
     """Return which samples are measurements.
 
     A module that is dead, stuck, cut off or driven into its stops gives samples too, and after a

@@ -3,10 +3,11 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, IntArray
 
 
 @_checks.quiet
-def nearest_neighbor(distance, accept=None):
+def nearest_neighbor(distance: ArrayLike, accept: ArrayLike | None = None) -> IntArray:
     """Return the nearest of the detections that are accepted.
 
     Parameters
@@ -52,7 +53,7 @@ def nearest_neighbor(distance, accept=None):
 
 
 @_checks.quiet
-def greedy_assign(cost, gate):
+def greedy_assign(cost: ArrayLike, gate: float) -> IntArray:
     """Return an assignment that takes the cheapest pair first, then the cheapest of the rest.
 
     Parameters
@@ -94,7 +95,7 @@ def greedy_assign(cost, gate):
 
 
 @_checks.quiet
-def gnn_assign(cost, gate):
+def gnn_assign(cost: ArrayLike, gate: float) -> IntArray:
     """Return the assignment of least total cost: the global nearest neighbor.
 
     Parameters

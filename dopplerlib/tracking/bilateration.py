@@ -3,10 +3,13 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, BoolArray, FloatArray
 
 
 @_checks.quiet
-def bilaterate(d1, d2, baseline):
+def bilaterate(
+    d1: ArrayLike, d2: ArrayLike, baseline: float
+) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Return where two circles about two radars on the x axis meet, on the side of positive y.
 
     Parameters

@@ -3,11 +3,14 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, FloatArray
 from ..estimation import gaussian
 
 
 @_checks.quiet
-def fuse_state_vectors(x1, P1, x2, P2, P12=None):
+def fuse_state_vectors(
+    x1: ArrayLike, P1: ArrayLike, x2: ArrayLike, P2: ArrayLike, P12: ArrayLike | None = None
+) -> tuple[FloatArray, FloatArray]:
     """Fuse two estimates by their covariances, with or without what they have in common.
 
     Parameters
@@ -85,7 +88,15 @@ def _independent(x1, P1, x2, P2):
 
 
 @_checks.quiet
-def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
+def cross_covariance_step(
+    P12: ArrayLike,
+    F: ArrayLike,
+    Q: ArrayLike,
+    K1: ArrayLike,
+    H1: ArrayLike,
+    K2: ArrayLike,
+    H2: ArrayLike,
+) -> FloatArray:
     """Return the covariance between the errors of two filters after one more cycle.
 
     Parameters
@@ -137,7 +148,9 @@ def cross_covariance_step(P12, F, Q, K1, H1, K2, H2):
 
 
 @_checks.quiet
-def covariance_intersection(x1, P1, x2, P2, w=None):
+def covariance_intersection(
+    x1: ArrayLike, P1: ArrayLike, x2: ArrayLike, P2: ArrayLike, w: ArrayLike | None = None
+) -> tuple[FloatArray, FloatArray]:
     """Fuse two estimates of which nobody knows what they have in common.
 
     Parameters
@@ -201,7 +214,9 @@ def covariance_intersection(x1, P1, x2, P2, w=None):
 
 
 @_checks.quiet
-def fuse_measurements(z1, R1, z2, R2):
+def fuse_measurements(
+    z1: ArrayLike, R1: ArrayLike, z2: ArrayLike, R2: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
     """Return the weighted mean of two independent measurements of the same thing.
 
     Parameters

@@ -3,10 +3,11 @@
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike, BoolArray
 
 
 @_checks.quiet
-def chi2_gate(nis, m, probability):
+def chi2_gate(nis: ArrayLike, m: int, probability: float) -> BoolArray:
     """Return where a measurement is inside the gate of this probability.
 
     Parameters
@@ -47,7 +48,7 @@ def chi2_gate(nis, m, probability):
 
 
 @_checks.quiet
-def fixed_box_gate(innovation, half_widths):
+def fixed_box_gate(innovation: ArrayLike, half_widths: ArrayLike) -> BoolArray:
     """Return where every component of the innovation is inside a box of fixed size.
 
     Parameters

@@ -85,7 +85,7 @@ class TrackManager:
         if self.hits > self.window:
             raise ValueError(f"hits must be at most window = {self.window}, got {self.hits}")
 
-    def start(self):
+    def start(self) -> TrackLife:
         """Return the life of a track that one detection has just started.
 
         Returns
@@ -95,7 +95,7 @@ class TrackManager:
         status = CONFIRMED if self.hits == 1 else TENTATIVE
         return TrackLife(status, recent=(True,), age=1, misses=0)
 
-    def advance(self, life, detected):
+    def advance(self, life: TrackLife, detected: bool) -> TrackLife:
         """Return the life of a track after one more scan.
 
         Parameters

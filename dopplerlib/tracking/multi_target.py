@@ -1,9 +1,13 @@
 """Many detections a scan, an unknown number of targets: predict, gate, assign, update, start."""
 
+from collections.abc import Callable, Iterable
+from typing import Any
+
 import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike
 from ..estimation import gaussian
 from ..estimation.extended_update import linearized
 from .association import gnn_assign
@@ -37,8 +41,19 @@ class ManagedTrack:
 
 @_checks.quiet
 def track_scans(
-    scans, F, Q, h, H, R, start, manager, probability=0.999, assign=gnn_assign, wrap=(), new=None
-):
+    scans: Iterable[ArrayLike],
+    F: ArrayLike,
+    Q: ArrayLike,
+    h: Callable[..., Any],
+    H: Callable[..., Any],
+    R: ArrayLike,
+    start: Callable[..., Any],
+    manager: TrackManager,
+    probability: float = 0.999,
+    assign: Callable[..., Any] = gnn_assign,
+    wrap: Iterable[int] = (),
+    new: Callable[..., Any] | None = None,
+) -> list[ManagedTrack]:
     """Track all targets in a sequence of scans.
 
     Parameters

@@ -4,6 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import ArrayLike
 from ..estimation import gaussian
 
 
@@ -30,7 +31,17 @@ class PdaUpdate:
 
 
 @_checks.quiet
-def pda_update(x, P, z, H, R, *, detection, density, gate=0.999):
+def pda_update(
+    x: ArrayLike,
+    P: ArrayLike,
+    z: ArrayLike,
+    H: ArrayLike,
+    R: ArrayLike,
+    *,
+    detection: float,
+    density: float,
+    gate: float = 0.999,
+) -> PdaUpdate:
     """Update a state with several detections, of which at most one is of the target.
 
     Parameters

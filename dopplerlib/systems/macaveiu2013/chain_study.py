@@ -11,9 +11,8 @@ from functools import cache
 import numpy as np
 from scipy.special import ndtr
 
-from ... import _checks
+from ... import _checks, _records
 from ..._data import read_lines
-from ..._records import record
 from ...model.polar_radar import polar_radar_h
 from ...tracking.association import gnn_assign
 from ...tracking.management import TrackManager
@@ -42,7 +41,7 @@ ONLY = {
 }
 
 
-@record
+@_records.record
 class Outcome:
     """What the scheme made of one record.
 
@@ -77,7 +76,7 @@ class Outcome:
     begun: int
 
 
-@record
+@_records.record
 class Counts:
     """How many detections of one record there are, and how many the clutter rule calls clutter.
 

@@ -1,0 +1,8 @@
+# Made by python -m tools.stubs; do not edit.
+from . import block as block
+from . import doppler as doppler
+from . import ekf as ekf
+from . import printers as printers
+from . import ring as ring
+from . import snapshot as snapshot
+from . import sources as sources

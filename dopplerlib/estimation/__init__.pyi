@@ -1,0 +1,12 @@
+# Made by python -m tools.stubs; do not edit.
+from . import extended_kalman as extended_kalman
+from . import extended_update as extended_update
+from . import gaussian as gaussian
+from . import imm as imm
+from . import linear_kalman as linear_kalman
+from . import maximum_likelihood as maximum_likelihood
+from . import radial_velocity as radial_velocity
+from . import smoother as smoother
+from . import steady_state as steady_state
+from . import track as track
+from . import variable_projection as variable_projection

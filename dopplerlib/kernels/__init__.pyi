@@ -1,0 +1,3 @@
+# Made by python -m tools.stubs; do not edit.
+from . import doppler as doppler
+from . import ekf as ekf

@@ -1,0 +1,13 @@
+# Made by python -m tools.stubs; do not edit.
+from . import ambiguity as ambiguity
+from . import doppler as doppler
+from . import information as information
+from . import kinematics as kinematics
+from . import motion as motion
+from . import polar_radar as polar_radar
+from . import radar_array as radar_array
+from . import range_rate as range_rate
+from . import ranging_noise as ranging_noise
+from . import scenario as scenario
+from . import simulation as simulation
+from . import twin as twin

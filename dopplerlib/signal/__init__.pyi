@@ -1,0 +1,11 @@
+# Made by python -m tools.stubs; do not edit.
+from . import frequency as frequency
+from . import front_end as front_end
+from . import impairments as impairments
+from . import interpolation as interpolation
+from . import laws as laws
+from . import phase as phase
+from . import recording as recording
+from . import sliding as sliding
+from . import synthesis as synthesis
+from . import validity as validity
