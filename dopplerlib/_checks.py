@@ -185,7 +185,7 @@ def deviation(name, value, shape=None):
 
 def one_number(name, value, check=finite):
     """Return `value` as a float, or raise if it is not one number that passes `check`."""
-    if type(value) is float and 1e-150 < value < 1e150:
+    if type(value) is float and 1e-60 < value < 1e3:
         return value  # passes every check there is, without becoming an array
     array = check(name, value)
     if array.ndim:
@@ -278,13 +278,13 @@ def function(name, value):
     return value
 
 
-def estimates(names, *arrays):
+def estimates(names, *arrays, what="estimates"):
     """Raise unless the results that come of the arguments `names` are finite."""
     for array in arrays:
         if not np.isfinite(array).all():
             place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
             raise ValueError(
-                f"{names} must keep the estimates within the range of floating-point numbers, "
+                f"{names} must keep the {what} within the range of floating-point numbers, "
                 f"got {array[place]} at index {place}"
             )
 
@@ -427,3 +427,46 @@ def text(name, value, least=0):
 def records(name, values, kind):
     """Return `values`, any iterable of records of the class `kind`, as a tuple, or raise."""
     return tuple(instance(name, value, kind) for value in iterable(name, values))
+
+
+# Products of five numbers of this size are finite, and so are the formulas of models. No length,
+# speed or time in the universe is beyond it, in SI units.
+_MODERATE = 1e60
+
+
+def moderate(name, value, shape=None):
+    """Return `value` as a float array, or raise if it is not finite or beyond 1e60 in size."""
+    array = finite(name, value, shape)
+    _check_all(name, f"between -{_MODERATE:g} and {_MODERATE:g}", array, np.abs(array) <= _MODERATE)
+    return array
+
+
+def moderate_number(name, value):
+    """Return `value` as a float, or raise if it is not one number from 1e-60 to 1e60."""
+    number = positive_number(name, value)
+    if not 1 / _MODERATE <= number <= _MODERATE:
+        raise ValueError(
+            f"{name} must lie between {1 / _MODERATE:g} and {_MODERATE:g}, got {number}"
+        )
+    return number
+
+
+def decibels(name, value):
+    """Return `value` as a float array, or raise if a ratio in dB is none of two floats."""
+    array = finite(name, value)
+    _check_all(name, "between -3000 and 3000 dB", array, np.abs(array) <= 3000)
+    return array
+
+
+def count(name, value, most, least=1):
+    """Return `value` as an int, or raise if it is not a whole number from `least` to `most`."""
+    number = whole_number(name, value, least)
+    if number > most:
+        raise ValueError(f"{name} must be at most {most}, got {number}")
+    return number
+
+
+def shape(name, value):
+    """Return `value`, a whole number or an iterable of them, as the shape of an array, or raise."""
+    lengths = (value,) if isinstance(value, (int, np.integer)) else tuple(iterable(name, value))
+    return tuple(count(name, length, 2**40, least=0) for length in lengths)

@@ -33,8 +33,6 @@ def tables(path, name="path"):
             raise ValueError(f"the file must be TOML in UTF-8, got {error}") from None
         except RecursionError:
             raise ValueError("the file must be TOML, got too many brackets in each other") from None
-        except MemoryError as error:
-            raise ValueError(f"the numbers must leave room in memory, got {error}") from None
     except ValueError as error:  # those of TOML are ValueErrors as well
         raise ValueError(f"{path}: {error}") from error
 

@@ -1,4 +1,4 @@
-"""Innovations of which some are missing: checked, counted, and divided by their deviations."""
+"""What tests of consistency share: a track's innovations, of which some are missing, and states."""
 
 import numpy as np
 
@@ -71,17 +71,36 @@ def of_track(track):
     return innovation, S, there
 
 
-def whiten(innovation, S):
-    """Return L^-1 innovation with S = L L': independent values of variance 1 if all is right.
+def estimates(track):
+    """Return states and covariances of a track, or raise if it has none that can be judged."""
+    if not (hasattr(track, "x") and hasattr(track, "P")):  # an ImmTrack has them as well
+        _checks.instance("track", track, Track)
+    if track.P is None:
+        raise ValueError('track must hold P, got None: ask ekf for it with keep=("P",)')
+    x = _checks.finite("track.x", track.x, (None, None))
+    P = _checks.covariance("track.P", track.P, x.shape[-1], definite=False)
+    _checks.check_shape("track.P", P, (*x.shape[-2:], x.shape[-1]))
+    _checks.check_broadcast("track.P", P.shape[:-3], "track.x", x.shape[:-2])
+    return x, P
 
-    Factors L that all runs share are used once for all of them.
+
+def whiten(vector, S, names="innovation, S"):
+    """Return L^-1 vector with S = L L': independent values of variance 1 if all is right.
+
+    Factors L that all runs share are used once for all of them. What is further off than 1e60
+    deviations is refused, for sums of squares could not hold it.
     """
     L = np.linalg.cholesky(S)
-    if innovation.ndim > 2 and L.size == np.prod(L.shape[-3:]):
-        runs = innovation.reshape(-1, *innovation.shape[-2:])
-        columns = np.linalg.solve(L.reshape(L.shape[-3:]), np.moveaxis(runs, 0, -1))
-        return np.moveaxis(columns, -1, 0).reshape(innovation.shape)
-    return np.linalg.solve(L, innovation[..., None])[..., 0]
+    with np.errstate(all="ignore"):
+        if vector.ndim > 2 and L.size == np.prod(L.shape[-3:]):
+            runs = vector.reshape(-1, *vector.shape[-2:])
+            columns = np.linalg.solve(L.reshape(L.shape[-3:]), np.moveaxis(runs, 0, -1))
+            white = np.moveaxis(columns, -1, 0).reshape(vector.shape)
+        else:
+            white = np.linalg.solve(L, vector[..., None])[..., 0]
+    if not (np.abs(white) <= 1e60).all():
+        raise ValueError(f"{names} must belong together, got a value of over 1e60 deviations")
+    return white
 
 
 def chi2_tail(statistic, dof):
@@ -89,3 +108,49 @@ def chi2_tail(statistic, dof):
     from scipy.stats import chi2  # here: it takes longer to load than all the rest
 
     return np.where(dof > 0, chi2.sf(statistic, np.maximum(dof, 1)), np.nan)[()]
+
+
+def ljung_box(white, there, lags, least=None):
+    """Return the fields of a `Whiteness` for values of variance 1; nothing is checked.
+
+    Parameters
+    ----------
+    white : ndarray, shape (..., K, m)
+        Zero where a value is missing.
+    there : ndarray of bool, shape (..., K, m)
+        Which values are not missing.
+    lags : int
+        Number of lags.
+    least : int
+        Components with fewer values than that are left out; more than `lags` if None.
+    """
+    samples = white.shape[-2]
+    n = there.sum(axis=-2)
+    used = n >= (lags + 1 if least is None else least)
+    highest = np.where(there, white, -np.inf).max(axis=-2)
+    if (used & (highest == np.where(there, white, np.inf).min(axis=-2))).any():
+        raise ValueError("innovation must vary in time, got a component that is constant")
+    n = np.where(used, n, 1)
+    white = np.where(there, white - (white.sum(axis=-2) / n)[..., None, :], 0.0)
+    power = np.where(used, np.sum(white**2, axis=-2), 1.0)
+    found = zip(*(_lag(white, there, lag) for lag in range(1, lags + 1)), strict=True)
+    products, pairs = (np.stack(one, axis=-2) for one in found)
+    known = used[..., None, :] & (pairs > 0)
+    pairs = np.where(known, pairs, 1)
+    n, ratio = n[..., None, :], products / power[..., None, :]
+    statistic = np.sum(np.where(known, n * (n + 2) / pairs * ratio**2, 0.0), axis=(-2, -1))
+    # The sum of products goes with the number of pairs, that of squares with the number of values.
+    whole = (samples - np.arange(1, lags + 1))[:, None] * n / (pairs * samples)
+    dof = known.sum(axis=(-2, -1))
+    return (
+        np.where(known, ratio * whole, np.nan),
+        statistic,
+        lags * white.shape[-1] if known.all() else dof,
+        chi2_tail(statistic, dof),
+    )
+
+
+def _lag(white, there, lag):
+    """Return the sums of the products of values `lag` apart, and how many there are."""
+    products = np.sum(white[..., lag:, :] * white[..., :-lag, :], axis=-2)
+    return products, np.sum(there[..., lag:, :] & there[..., :-lag, :], axis=-2)

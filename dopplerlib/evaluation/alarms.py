@@ -7,8 +7,7 @@ import numpy as np
 from .. import _checks
 from .._typing import ArrayLike, BoolArray, FloatArray
 from ..estimation.track import Track
-from ._innovations import chi2_tail, of_track, whiten
-from .whiteness import ljung_box
+from ._innovations import chi2_tail, ljung_box, of_track, whiten
 
 
 def innovation_alarms(
@@ -66,7 +65,7 @@ def innovation_alarms(
         square = np.sum(part.sum(axis=-2) ** 2 / np.maximum(n, 1), axis=-1)
         p["NIS average"].append(chi2_tail(np.sum(part**2, axis=(-2, -1)), total))
         p["innovation mean"].append(chi2_tail(square, of_means))
-        p["whiteness"].append(ljung_box(part, known, lags, least).p_value)
+        p["whiteness"].append(ljung_box(part, known, lags, least)[-1])
     # Where there is no value yet, there is no p-value either, and no alarm.
     return {name: np.stack(values, axis=-1) < threshold for name, values in p.items()}
 

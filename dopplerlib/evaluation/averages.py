@@ -88,7 +88,7 @@ def effective_samples(autocorrelation: ArrayLike, samples: int) -> FloatArray:
     >>> round(float(effective_samples(0.9 ** np.arange(1, 1000), 1000)))
     53
     """
-    autocorrelation = _checks.finite("autocorrelation", autocorrelation, (None,))
+    autocorrelation = _checks.moderate("autocorrelation", autocorrelation, (None,))
     samples = _checks.whole_number("samples", samples)
     lags = autocorrelation.shape[-1]
     if lags >= samples:
@@ -160,16 +160,18 @@ def nees_samples(P: ArrayLike, F: ArrayLike, Q: ArrayLike) -> float:
         P, F, Q, n = P[block], F[block], Q[block], int(unknown.sum())
     P = _checks.covariance("P", P, n)
     L = np.linalg.cholesky(P)
-    predicted = F[1:] @ P[:-1] @ F[1:].mT + Q[1:]
-    # C of neighbors: L_k^-1 P_k = L_k', so that only the prediction has to be solved for.
-    try:
-        step = L[1:].mT @ np.linalg.solve(predicted, F[1:] @ L[:-1])
-    except np.linalg.LinAlgError:
-        raise ValueError(
-            "F and Q must give F P F' + Q an inverse, got a matrix that is singular to rounding"
-        ) from None
-    C, total = step, 0.0
-    for lag in range(1, len(P)):
-        total += np.sum(C**2)
-        C = step[lag:] @ C[:-1]
+    with np.errstate(all="ignore"):
+        predicted = F[1:] @ P[:-1] @ F[1:].mT + Q[1:]
+        # C of neighbors: L_k^-1 P_k = L_k', so that only the prediction has to be solved for.
+        try:
+            step = L[1:].mT @ np.linalg.solve(predicted, F[1:] @ L[:-1])
+        except np.linalg.LinAlgError:
+            raise ValueError(
+                "F and Q must give F P F' + Q an inverse, got a matrix that is singular to rounding"
+            ) from None
+        C, total = step, 0.0
+        for lag in range(1, len(P)):
+            total += np.sum(C**2)
+            C = step[lag:] @ C[:-1]
+    _checks.estimates("P, F, Q", np.asarray(total), what="correlations")
     return float(n * len(P) ** 2 / (n * len(P) + 2 * total))

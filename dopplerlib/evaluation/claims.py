@@ -81,7 +81,8 @@ def read_claims(path: FileSource) -> tuple[Claim, ...]:
 
 
 def check_claim(where: str, claim: Claim) -> None:
-    """Raise unless the fields of a claim are of the right kinds and fit each other."""
+    """Raise a ValueError, with `where` in it, unless a claim is one that a file may hold."""
+    _checks.instance("claim", claim, Claim)
     for name in ("id", "where", "statement", "page", "cell", "test"):
         _checks.text(f"{name} of {where}", getattr(claim, name), least=1)
     for name in ("unit", "note"):

@@ -7,7 +7,7 @@ from .._typing import ArrayLike, FloatArray
 from ..estimation import gaussian
 from ..estimation.imm import ImmTrack
 from ..estimation.track import Track
-from ._innovations import measured, whiten
+from ._innovations import estimates, measured, whiten
 
 
 def nees(track: Track | ImmTrack, truth: ArrayLike) -> FloatArray:
@@ -51,25 +51,14 @@ def nees(track: Track | ImmTrack, truth: ArrayLike) -> FloatArray:
     x, P = estimates(track)
     truth = _checks.finite("truth", truth, x.shape[-2:])
     _checks.check_broadcast("truth", truth.shape[:-2], "track.x", x.shape[:-2])
-    error = truth - x
+    with np.errstate(over="ignore"):
+        error = truth - x
+    _checks.estimates("track, truth", error, what="errors")
     try:
         np.linalg.cholesky(P)
     except np.linalg.LinAlgError:
         return _form_of_singular(error, P, np.maximum(np.abs(truth), np.abs(x)))
-    return np.sum(whiten(error, P) ** 2, axis=-1)
-
-
-def estimates(track: Track | ImmTrack) -> tuple[FloatArray, FloatArray]:
-    """Return states and covariances of a track, or raise if it has none that can be judged."""
-    if not (hasattr(track, "x") and hasattr(track, "P")):  # an ImmTrack has them as well
-        _checks.instance("track", track, Track)
-    if track.P is None:
-        raise ValueError('track must hold P, got None: ask ekf for it with keep=("P",)')
-    x = _checks.finite("track.x", track.x, (None, None))
-    P = _checks.covariance("track.P", track.P, x.shape[-1], definite=False)
-    _checks.check_shape("track.P", P, (*x.shape[-2:], x.shape[-1]))
-    _checks.check_broadcast("track.P", P.shape[:-3], "track.x", x.shape[:-2])
-    return x, P
+    return np.sum(whiten(error, P, "track, truth") ** 2, axis=-1)
 
 
 def nis(innovation: ArrayLike, S: ArrayLike) -> FloatArray:
@@ -105,7 +94,9 @@ def nis(innovation: ArrayLike, S: ArrayLike) -> FloatArray:
     25.0
     """
     innovation, S, there = measured(innovation, S)
-    return np.where(there.any(axis=-1), gaussian.quadratic_form(innovation, S), np.nan)[()]
+    value = gaussian.quadratic_form(innovation, S)
+    _checks.estimates("innovation, S", value, what="NIS")
+    return np.where(there.any(axis=-1), value, np.nan)[()]
 
 
 def chi2_interval(dof: int, runs: int = 1, confidence: float = 0.95) -> tuple[float, float]:

@@ -50,6 +50,6 @@ def errors_by_direction(error: ArrayLike, P: ArrayLike) -> FloatArray:
     along = (np.swapaxes(axis, -1, -2) @ error[..., None])[..., 0]
     # An axis without spread: what rounding leaves of the largest variance, and of the error.
     none = variance <= error.shape[-1] ** 2 * np.finfo(float).eps * variance[..., -1:]
-    right = np.abs(along) <= 1e-9 * np.linalg.norm(error, axis=-1, keepdims=True)
+    right = np.abs(along) <= 1e-9 * np.abs(error).max(axis=-1, keepdims=True)
     sure = np.where(right, 0.0, np.copysign(np.inf, along))
     return np.where(none, sure, along / np.sqrt(np.where(none, 1.0, variance)))[..., ::-1]

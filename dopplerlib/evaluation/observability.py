@@ -5,10 +5,11 @@ from typing import Literal
 import numpy as np
 from scipy.stats import norm
 
+from .. import _checks
 from .._typing import ArrayLike, FloatArray, IntArray
 from ..estimation.maximum_likelihood import ml_start
 from ..model.doppler import doppler_shift
-from ..model.information import SINGULAR, fisher_information
+from ..model.information import SINGULAR, fisher_information, free_components
 from ..model.radar_array import RadarArray
 
 
@@ -47,7 +48,7 @@ def seen_directions(
     Raises
     ------
     ValueError
-        If an argument is refused by `fisher_information`.
+        If an argument is refused by `fisher_information`, or `free` is not six booleans.
 
     Examples
     --------
@@ -55,9 +56,8 @@ def seen_directions(
     >>> int(seen_directions([0.8, 0.1, 0.1, -0.7, 0, 0], RadarArray.ring(12, 0.2)))
     5
     """
-    J = fisher_information(x, array, 1.0, K, T, likelihood)
-    if free is not None:
-        J = J[..., *np.ix_(np.asarray(free, bool), np.asarray(free, bool))]
+    free = free_components(free, 6)
+    J = fisher_information(x, array, 1.0, K, T, likelihood)[..., *np.ix_(free, free)]
     scale = np.sqrt(np.diagonal(J, axis1=-2, axis2=-1))
     scale = np.where(scale > 0, scale, 1.0)
     eigenvalue = np.linalg.eigvalsh(J / (scale[..., :, None] * scale[..., None, :]))
@@ -82,18 +82,42 @@ def rms_bounds(
         In m and m/s.
     range : ndarray, shape (...)
         Along the line from the origin to the target, in m. Only with `x`.
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not fit, a value is no real number, a variance is negative or NaN, a
+        covariance of two finite variances is not finite, or `x` is not finite or at the origin.
+
+    Examples
+    --------
+    >>> position, velocity = rms_bounds(np.diag([1.0, 4.0, 4.0, 0.0, 9.0, 16.0]))
+    >>> float(position), float(velocity)
+    (3.0, 5.0)
     """
+    P = _checks.real("P", P)
+    _checks.check_shape("P", P, (6, 6))
     variance = np.diagonal(P, axis1=-2, axis2=-1)
+    if not (variance >= 0).all():
+        raise ValueError(f"P must have no variance below zero and none missing, got {variance}")
+    # An infinite variance has NaN covariances.
+    lost = np.isinf(variance)
+    known = ~(lost[..., :, None] | lost[..., None, :])
+    P = _checks.moderate("P", np.where(known, P, np.eye(6)))
+    _checks.covariance("P", P, 6, definite=False)
     bounds = tuple(np.sqrt(variance[..., part].sum(axis=-1)) for part in (np.s_[:3], np.s_[3:]))
     if x is None:
         return bounds
-    p = np.asarray(x, float)[..., :3]
-    along = p / np.linalg.norm(p, axis=-1, keepdims=True)
-    # An infinite variance has NaN covariances; it reaches every range that is not across it.
-    lost = np.isinf(variance[..., :3])
-    reached = (lost & (along != 0)).any(axis=-1)
-    known = ~(lost[..., :, None] | lost[..., None, :])
-    square = np.where(known, np.asarray(P, float)[..., :3, :3], 0.0)
+    x = _checks.moderate("x", x, (6,))
+    _checks.check_broadcast("x", x.shape[:-1], "P", P.shape[:-2])
+    p = x[..., :3]
+    distance = np.hypot(np.hypot(p[..., 0], p[..., 1]), p[..., 2])[..., None]
+    if not distance.all():
+        raise ValueError("x must lie off the origin, got a range of 0")
+    along = p / distance
+    # An infinite variance reaches every range that is not across it.
+    reached = (lost[..., :3] & (along != 0)).any(axis=-1)
+    square = np.where(known, P, 0.0)[..., :3, :3]
     square = np.einsum("...i,...ij,...j->...", along, square, along)
     return *bounds, np.sqrt(np.where(reached, np.inf, square))
 
@@ -136,7 +160,7 @@ def confusion(
     Raises
     ------
     ValueError
-        If an argument is refused by `ml_start`.
+        If `x` is not one state, or an argument is refused by `ml_start`.
 
     Notes
     -----
@@ -144,8 +168,13 @@ def confusion(
     where D^2 is the chi-square by which the states' measurements differ. So the chance is the
     normal distribution at -D / 2. It leaves out that both optima move with the noise.
     """
-    path = np.tile(np.asarray(x, float), (K, 1))
-    if likelihood == "moving":
+    x = _checks.moderate("x", x, (6,))
+    if x.ndim != 1:
+        raise ValueError(f"x must be one state of shape (6,), got shape {x.shape}")
+    K, T = _checks.whole_number("K", K), _checks.moderate_number("T", T)
+    sigma_f = _checks.one_number("sigma_f", sigma_f, _checks.deviation)
+    path = np.tile(x, (K, 1))
+    if _checks.one_of("likelihood", likelihood, ("static", "moving")) == "moving":
         path[:, :3] += T * np.arange(K)[:, None] * path[:, 3:]
     start = ml_start(doppler_shift(path, array), array, sigma_f, T, box, likelihood)
     distance = np.sqrt(np.maximum(start.second_cost - start.cost, 0.0))

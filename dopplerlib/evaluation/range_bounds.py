@@ -46,10 +46,13 @@ def range_crlb(p: ArrayLike, sensors: ArrayLike, sigma: ArrayLike) -> FloatArray
     >>> np.sqrt(np.diagonal(P)).round(3).tolist()
     [0.171, 0.021]
     """
-    p = _checks.finite("p", p, (2,))
+    p = _checks.moderate("p", p, (2,))
     sigma = _checks.deviation("sigma", sigma)
     state = np.concatenate([p, np.zeros_like(p)], axis=-1)
     u = range_rate_jacobian(state, sensors)[..., 0, :2]
     _checks.check_broadcast("sigma", sigma.shape, "p and sensors", u.shape[:-1])
-    w = u / sigma[..., None]
-    return inverse_information(np.swapaxes(w, -1, -2) @ w)[0]
+    with np.errstate(all="ignore"):
+        w = u / sigma[..., None]
+        information = np.swapaxes(w, -1, -2) @ w
+    _checks.estimates("p, sensors, sigma", information, what="information")
+    return inverse_information(information)[0]

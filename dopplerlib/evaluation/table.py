@@ -46,10 +46,10 @@ class Table:
     corner: str = ""
 
     def __post_init__(self):
-        columns = tuple(_checks.instance("columns", name, str) for name in self.columns)
+        columns = _checks.records("columns", self.columns, str)
         rows = _rows(self.rows, len(columns))
         digits = self.digits if np.iterable(self.digits) else [self.digits] * len(columns)
-        digits = tuple(_checks.whole_number("digits", value, least=0) for value in digits)
+        digits = tuple(_checks.count("digits", value, 100, least=0) for value in digits)
         if len(digits) != len(columns):
             raise ValueError(
                 f"digits must be one number or {len(columns)}, one for each column, "

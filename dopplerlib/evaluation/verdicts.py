@@ -118,7 +118,7 @@ def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
     >>> judge(claim, 3.14159).verdict
     'reproduced'
     """
-    check_claim(f"claim {_checks.instance('claim', claim, Claim).id!r}", claim)
+    check_claim(f"claim {getattr(claim, 'id', None)!r}", claim)
     if isinstance(evidence, Readings):
         return _judge_readings(claim, evidence)
     published = _published(claim, evidence)

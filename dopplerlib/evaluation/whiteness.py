@@ -4,8 +4,8 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from .._typing import ArrayLike, BoolArray, FloatArray
-from ._innovations import chi2_tail, measured, whiten
+from .._typing import ArrayLike, FloatArray
+from ._innovations import ljung_box, measured, whiten
 
 
 @record
@@ -122,52 +122,4 @@ def innovation_whiteness(innovation: ArrayLike, S: ArrayLike, lags: int = 20) ->
     lags = _checks.whole_number("lags", lags)
     if lags >= samples:
         raise ValueError(f"lags must be less than the number of samples {samples}, got {lags}")
-    return ljung_box(whiten(innovation, S), there, lags)
-
-
-def ljung_box(
-    white: FloatArray, there: BoolArray, lags: int, least: int | None = None
-) -> Whiteness:
-    """Return the test of `innovation_whiteness` for values of variance 1; nothing is checked.
-
-    Parameters
-    ----------
-    white : ndarray, shape (..., K, m)
-        Zero where a value is missing.
-    there : ndarray of bool, shape (..., K, m)
-        Which values are not missing.
-    lags : int
-        Number of lags.
-    least : int
-        Components with fewer values than that are left out; more than `lags` if None.
-    """
-    samples = white.shape[-2]
-    n = there.sum(axis=-2)
-    used = n >= (lags + 1 if least is None else least)
-    highest = np.where(there, white, -np.inf).max(axis=-2)
-    if (used & (highest == np.where(there, white, np.inf).min(axis=-2))).any():
-        raise ValueError("innovation must vary in time, got a component that is constant")
-    n = np.where(used, n, 1)
-    white = np.where(there, white - (white.sum(axis=-2) / n)[..., None, :], 0.0)
-    power = np.where(used, np.sum(white**2, axis=-2), 1.0)
-    found = zip(*(_lag(white, there, lag) for lag in range(1, lags + 1)), strict=True)
-    products, pairs = (np.stack(one, axis=-2) for one in found)
-    known = used[..., None, :] & (pairs > 0)
-    pairs = np.where(known, pairs, 1)
-    n, ratio = n[..., None, :], products / power[..., None, :]
-    statistic = np.sum(np.where(known, n * (n + 2) / pairs * ratio**2, 0.0), axis=(-2, -1))
-    # The sum of products goes with the number of pairs, that of squares with the number of values.
-    whole = (samples - np.arange(1, lags + 1))[:, None] * n / (pairs * samples)
-    dof = known.sum(axis=(-2, -1))
-    return Whiteness(
-        np.where(known, ratio * whole, np.nan),
-        statistic,
-        lags * white.shape[-1] if known.all() else dof,
-        chi2_tail(statistic, dof),
-    )
-
-
-def _lag(white, there, lag):
-    """Return the sums of the products of values `lag` apart, and how many there are."""
-    products = np.sum(white[..., lag:, :] * white[..., :-lag, :], axis=-2)
-    return products, np.sum(there[..., lag:, :] & there[..., :-lag, :], axis=-2)
+    return Whiteness(*ljung_box(whiten(innovation, S), there, lags))

@@ -26,8 +26,8 @@ def ring_family(x: ArrayLike, radius: float, t: ArrayLike) -> FloatArray:
     Raises
     ------
     ValueError
-        If an argument has the wrong shape or is not finite, x is zero, or `t` is not between the
-        limits.
+        If an argument has the wrong shape, is not finite or beyond 1e60, x is zero, or `t` is not
+        between the limits.
 
     Notes
     -----
@@ -50,6 +50,7 @@ def ring_family(x: ArrayLike, radius: float, t: ArrayLike) -> FloatArray:
     p, v = x[..., :3], x[..., 3:]
     across = t[..., None] ** 2 * p[..., 1:]
     across_v = t[..., None] * v[..., 1:]
+    _checks.estimates("x, radius, t", t**4 * np.sum(p * p, axis=-1), what="states")
     square = t**2 * (np.sum(p * p, axis=-1) + radius**2) - radius**2 - np.sum(across**2, axis=-1)
     ahead = np.copysign(np.sqrt(square), p[..., 0])
     ahead_v = (t * np.sum(p * v, axis=-1) - np.sum(across * across_v, axis=-1)) / ahead
@@ -74,7 +75,7 @@ def ring_family_limits(x: ArrayLike, radius: float) -> tuple[FloatArray, FloatAr
     Raises
     ------
     ValueError
-        If an argument has the wrong shape or is not finite, or x is zero.
+        If an argument has the wrong shape, is not finite or beyond 1e60, or x is zero.
 
     Notes
     -----
@@ -92,7 +93,7 @@ def ring_family_limits(x: ArrayLike, radius: float) -> tuple[FloatArray, FloatAr
     across = np.sum(x[..., 1:3] ** 2, axis=-1)
     # Roots of across u^2 - A u + r^2 for u = t^2, in the form that does not cancel.
     larger = A + np.sqrt(np.maximum(A * A - 4 * across * radius**2, 0.0))
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         return np.sqrt(2 * radius**2 / larger), np.sqrt(larger / (2 * across))
 
 
@@ -114,7 +115,7 @@ def ring_family_direction(x: ArrayLike, radius: float) -> FloatArray:
     Raises
     ------
     ValueError
-        If an argument has the wrong shape or is not finite, or x is zero.
+        If an argument has the wrong shape, is not finite or beyond 1e60, or x is zero.
 
     Notes
     -----
@@ -143,7 +144,7 @@ def ring_family_direction(x: ArrayLike, radius: float) -> FloatArray:
 
 
 def _state(x, radius):
-    x = _checks.finite("x", x, (6,))
+    x = _checks.moderate("x", x, (6,))
     if not (x[..., 0] != 0).all():
         raise ValueError("x must not lie in the plane of the ring, got x = 0")
-    return x, _checks.positive_number("radius", radius)
+    return x, _checks.moderate_number("radius", radius)

@@ -26,7 +26,8 @@ def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
     Raises
     ------
     ValueError
-        If `x` has another shape, is not finite, or lies on a sensor, or `array` is no RadarArray.
+        If `x` has another shape, is not finite, beyond 1e60 or on a sensor, or `array` is no
+        RadarArray.
 
     Notes
     -----
@@ -40,7 +41,9 @@ def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
     >>> float(doppler_shift([1, 0, 0, -1, 0, 0], RadarArray([[0, 0, 0]]))[0])
     160.0
     """
-    return kernel.doppler_shift(*_arguments(x, array))
+    shift = kernel.doppler_shift(*_arguments(x, array))
+    _checks.estimates("x, array", shift, what="shifts")
+    return shift
 
 
 def doppler_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
@@ -61,7 +64,8 @@ def doppler_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     Raises
     ------
     ValueError
-        If `x` has another shape, is not finite, or lies on a sensor, or `array` is no RadarArray.
+        If `x` has another shape, is not finite, beyond 1e60 or on a sensor, or `array` is no
+        RadarArray.
 
     Notes
     -----
@@ -73,8 +77,12 @@ def doppler_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     >>> doppler_jacobian([1, 0, 0, -1, 0, 0], RadarArray([[0, 0, 0]])).tolist()
     [[0.0, 0.0, 0.0, -160.0, 0.0, 0.0]]
     """
-    _, *gradient = kernel.doppler_shift_and_gradient(*_arguments(x, array))
-    return np.stack(gradient, axis=-1)
+    arguments = _arguments(x, array)
+    with np.errstate(all="ignore"):
+        _, *gradient = kernel.doppler_shift_and_gradient(*arguments)
+    gradient = np.stack(gradient, axis=-1)
+    _checks.estimates("x, array", gradient, what="derivatives")
+    return gradient
 
 
 def check_clear_of_sensors(name: str, x: FloatArray, array: RadarArray) -> None:
@@ -92,6 +100,6 @@ def check_clear_of_sensors(name: str, x: FloatArray, array: RadarArray) -> None:
 
 def _arguments(x, array):
     _checks.instance("array", array, RadarArray)
-    x = _checks.finite("x", x, (6,))
+    x = _checks.moderate("x", x, (6,))
     check_clear_of_sensors("x", x, array)
     return *np.moveaxis(x[..., None, :], -1, 0), *array.positions.T, array.doppler_per_speed

@@ -66,24 +66,37 @@ def fisher_information(
     >>> int(np.linalg.matrix_rank(J, hermitian=True, rtol=1e-13))
     5
     """
-    x = _checks.finite("x", x, (6,))
+    x = _checks.moderate("x", x, (6,))
     _checks.instance("array", array, RadarArray)
     K = _checks.whole_number("K", K)
-    T = _checks.positive_number("T", T)
+    T = _checks.moderate_number("T", T)
     moving = _checks.one_of("likelihood", likelihood, ("static", "moving")) == "moving"
     weight = 1 / _checks.each_run(
         "sigma_f", _checks.deviation("sigma_f", sigma_f), (K, len(array)), ()
     )
-    if not moving:
-        H = doppler_jacobian(x, array) * np.sqrt(np.sum(weight**2, axis=0))[:, None]
-        return H.swapaxes(-1, -2) @ H
-    information = np.zeros((*x.shape, 6))
-    for k in range(K):
-        F = np.eye(6)
-        F[:3, 3:] = k * T * np.eye(3)
-        H = doppler_jacobian(x @ F.T, array) * weight[k, :, None] @ F
-        information += H.swapaxes(-1, -2) @ H
+    with np.errstate(all="ignore"):
+        if moving:
+            information = np.zeros((*x.shape, 6))
+            for k in range(K):
+                F = np.eye(6)
+                F[:3, 3:] = k * T * np.eye(3)
+                H = doppler_jacobian(x @ F.T, array) * weight[k, :, None] @ F
+                information += H.swapaxes(-1, -2) @ H
+        else:
+            H = doppler_jacobian(x, array) * np.sqrt(np.sum(weight**2, axis=0))[:, None]
+            information = H.swapaxes(-1, -2) @ H
+    _checks.estimates("x, array, sigma_f, T", information, what="information")
     return information
+
+
+def free_components(free: ArrayLike | None, n: int) -> BoolArray:
+    """Return which of `n` components are unknown: all if `free` is None, else its booleans."""
+    if free is None:
+        return np.ones(n, bool)
+    free = _checks.booleans("free", free)
+    if free.shape != (n,):
+        raise ValueError(f"free must be {n} booleans, got an array of shape {free.shape}")
+    return free
 
 
 def inverse_information(
@@ -105,19 +118,17 @@ def inverse_information(
         unobservable direction is infinite and its covariances are NaN; the other components keep
         the finite values that they have whatever the unobservable directions do.
     regular : ndarray of bool, shape (...)
-        Whether the inverse exists.
+        Whether the inverse exists, and floating-point numbers can hold it.
 
     Raises
     ------
     ValueError
-        If the shapes do not fit or `information` is not finite.
+        If the shapes do not fit, or `information` is not finite.
     """
     information = _checks.finite("information", information, (None, None))
     n = information.shape[-1]
     _checks.check_shape("information", information, (n, n))
-    free = np.ones(n, bool) if free is None else np.asarray(free)
-    if free.shape != (n,) or free.dtype != bool:
-        raise ValueError(f"free must be {n} booleans, got {free.tolist()}")
+    free = free_components(free, n)
     covariance = np.zeros(information.shape)
     if not free.any():
         return covariance, np.ones(information.shape[:-2], bool)
@@ -129,10 +140,12 @@ def inverse_information(
     eigenvalue, V = np.linalg.eigh(J / scale)
     null = eigenvalue < SINGULAR
     inverse = np.where(null, 0.0, 1 / np.where(null, 1.0, eigenvalue))
-    P = (V * inverse[..., None, :]) @ V.swapaxes(-1, -2) / scale
+    with np.errstate(all="ignore"):
+        P = (V * inverse[..., None, :]) @ V.swapaxes(-1, -2) / scale
     # An eigenvector is exact to rounding over the gap to the next eigenvalue; 1e-6 is above that.
     lost = (np.abs(V) * null[..., None, :]).max(axis=-1) > 1e-6
+    lost |= ~np.isfinite(P).all(axis=-1)  # a variance beyond the range of floats
     P = np.where(lost[..., :, None] | lost[..., None, :], np.nan, P)
     P = np.where(lost[..., :, None] & np.eye(lost.shape[-1], dtype=bool), np.inf, P)
     covariance[..., *block] = P
-    return covariance, np.asarray(~null.any(axis=-1))
+    return covariance, np.asarray(~lost.any(axis=-1))

@@ -32,7 +32,7 @@ def ncv_transition(
     Raises
     ------
     ValueError
-        If `T` is negative, `dim` is not positive, or `order` is not one of the two.
+        If `T` is negative or beyond 1e60, `dim` is not positive, or `order` is not one of the two.
 
     Notes
     -----
@@ -70,7 +70,7 @@ def nca_transition(
     Raises
     ------
     ValueError
-        If `T` is negative, `dim` is not positive, or `order` is not one of the two.
+        If `T` is negative or beyond 1e60, `dim` is not positive, or `order` is not one of the two.
 
     Notes
     -----
@@ -106,7 +106,8 @@ def wna_process_noise(
     Raises
     ------
     ValueError
-        If `T` is negative, `q` or `dim` is not positive, or `order` is not one of the two.
+        If `T` is negative or beyond 1e60, `q` or `dim` is not positive, or `order` is not one of
+        the two.
 
     Notes
     -----
@@ -141,7 +142,8 @@ def wnj_process_noise(
     Raises
     ------
     ValueError
-        If `T` is negative, `q` or `dim` is not positive, or `order` is not one of the two.
+        If `T` is negative or beyond 1e60, `q` or `dim` is not positive, or `order` is not one of
+        the two.
 
     Notes
     -----
@@ -192,7 +194,7 @@ def velocity_step_noise(
 
 
 def _interval(T):
-    T = _checks.one_number("T", T)
+    T = _checks.one_number("T", T, _checks.moderate)
     if T < 0:
         raise ValueError(f"T must not be negative, got {T}")
     return T
@@ -217,11 +219,12 @@ def _white_noise(T, q, n, dim, order):
             # The product of T^a / a! and T^b / b!, integrated over the interval.
             a, b = n - 1 - i, n - 1 - j
             Q[i, j] = q * T ** (a + b + 1) / ((a + b + 1) * factorial(a) * factorial(b))
+    _checks.estimates("T, q", Q, what="process noise")
     return _all_axes(Q, dim, order)
 
 
 def _all_axes(block, dim, order):
-    dim = _checks.whole_number("dim", dim)
+    dim = _checks.count("dim", dim, 1000)
     if _checks.one_of("order", order, ORDERS) == "axis":
         return np.kron(np.eye(dim), block)
     return np.kron(block, np.eye(dim))

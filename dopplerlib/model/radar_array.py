@@ -25,8 +25,8 @@ class RadarArray:
     Raises
     ------
     ValueError
-        If `positions` is not a finite (N, 3) array with at least one sensor, if two sensors
-        share a place, or if `wavelength` is not positive.
+        If `positions` is not an (N, 3) array of numbers up to 1e60 with at least one sensor, if two
+        sensors share a place, or if `wavelength` is not between 1e-60 and 1e60.
 
     Notes
     -----
@@ -47,14 +47,14 @@ class RadarArray:
 
     def __post_init__(self):
         """Check the fields."""
-        positions = _checks.finite("positions", self.positions, (None, 3)).copy()
+        positions = _checks.moderate("positions", self.positions, (None, 3)).copy()
         if positions.ndim != 2 or not len(positions):
             raise ValueError(f"positions must have shape (N, 3) with N >= 1, got {positions.shape}")
         if len(np.unique(positions, axis=0)) < len(positions):
             raise ValueError(f"positions must differ from one another, got {positions.tolist()}")
         object.__setattr__(self, "positions", positions)
         object.__setattr__(
-            self, "wavelength", _checks.positive_number("wavelength", self.wavelength)
+            self, "wavelength", _checks.moderate_number("wavelength", self.wavelength)
         )
 
     def __len__(self):
@@ -102,8 +102,8 @@ class RadarArray:
         >>> RadarArray.ring(4, 0.2).positions.round(3)[:2].tolist()
         [[0.0, 0.2, 0.0], [0.0, 0.0, 0.2]]
         """
-        n = _checks.whole_number("n", n)
-        radius = _checks.positive_number("radius", radius)
+        n = _checks.count("n", n, 1_000_000)
+        radius = _checks.moderate_number("radius", radius)
         angle = _checks.one_number("phase", phase) + 2 * np.pi * np.arange(n) / n
         axis = _AXES[_checks.one_of("normal", normal, tuple(_AXES))]
         positions = np.zeros((n, 3))
@@ -138,8 +138,8 @@ class RadarArray:
         >>> RadarArray.linear(3, 0.4).positions.tolist()
         [[0.0, -0.2, 0.0], [0.0, 0.0, 0.0], [0.0, 0.2, 0.0]]
         """
-        n = _checks.whole_number("n", n, least=2)
-        length = _checks.positive_number("length", length)
+        n = _checks.count("n", n, 1_000_000, least=2)
+        length = _checks.moderate_number("length", length)
         positions = np.zeros((n, 3))
         positions[:, _AXES[_checks.one_of("axis", axis, tuple(_AXES))]] = np.linspace(
             -length / 2, length / 2, n

@@ -24,7 +24,7 @@ def range_rate(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     Raises
     ------
     ValueError
-        If a shape does not fit, a value is not finite, or a target is on a radar.
+        If a shape does not fit, a value is not finite or beyond 1e60, or a target is on a radar.
 
     Notes
     -----
@@ -59,7 +59,7 @@ def range_rate_jacobian(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     Raises
     ------
     ValueError
-        If a shape does not fit, a value is not finite, or a target is on a radar.
+        If a shape does not fit, a value is not finite or beyond 1e60, or a target is on a radar.
 
     Notes
     -----
@@ -75,14 +75,16 @@ def range_rate_jacobian(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     rate = np.einsum("...i,...i->...", u, v)
     H = np.zeros((*d.shape, 2, 4))
     H[..., 0, :2] = u
-    H[..., 1, :2] = (v - rate[..., None] * u) / d[..., None]
+    with np.errstate(all="ignore"):
+        H[..., 1, :2] = (v - rate[..., None] * u) / d[..., None]
     H[..., 1, 2:] = u
+    _checks.estimates("x, sensors", H, what="derivatives")
     return H
 
 
 def _geometry(x, sensors):
-    x = _checks.finite("x", x, (4,))
-    sensors = _checks.matrix("sensors", sensors, (None, 2))
+    x = _checks.moderate("x", x, (4,))
+    sensors = _checks.one_matrix("sensors", _checks.moderate("sensors", sensors, (None, 2)))
     line = x[..., None, :2] - sensors
     d = np.hypot(line[..., 0], line[..., 1])
     if not d.all():

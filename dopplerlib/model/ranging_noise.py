@@ -26,7 +26,7 @@ def linear_snr(d: ArrayLike, at_zero: float, slope: float) -> FloatArray:
     Raises
     ------
     ValueError
-        If an argument is not finite or not a number where it has to be one.
+        If an argument is not finite, beyond 1e60, or not a number where it has to be one.
 
     Notes
     -----
@@ -38,8 +38,12 @@ def linear_snr(d: ArrayLike, at_zero: float, slope: float) -> FloatArray:
     >>> linear_snr([1.0, 2.0], at_zero=52, slope=12).tolist()
     [40.0, 28.0]
     """
-    d = _checks.finite("d", d)
-    return _checks.one_number("at_zero", at_zero) - d * _checks.one_number("slope", slope)
+    d = _checks.moderate("d", d)
+    at_zero, slope = (
+        _checks.one_number(name, value, _checks.moderate)
+        for name, value in (("at_zero", at_zero), ("slope", slope))
+    )
+    return at_zero - d * slope
 
 
 def fourth_power_snr(d: ArrayLike, at_one: float) -> FloatArray:
@@ -92,7 +96,7 @@ def resolution_deviation(resolution: float, snr_db: ArrayLike) -> FloatArray:
     Raises
     ------
     ValueError
-        If `resolution` is not positive or `snr_db` not finite.
+        If `resolution` is not between 1e-60 and 1e60, or `snr_db` not between -3000 and 3000.
 
     Notes
     -----
@@ -105,8 +109,8 @@ def resolution_deviation(resolution: float, snr_db: ArrayLike) -> FloatArray:
     >>> float(resolution_deviation(0.15, 20.0).round(4))
     0.0106
     """
-    resolution = _checks.positive_number("resolution", resolution)
-    return resolution / np.sqrt(2 * 10 ** (_checks.finite("snr_db", snr_db) / 10))
+    resolution = _checks.moderate_number("resolution", resolution)
+    return resolution / np.sqrt(2 * 10 ** (_checks.decibels("snr_db", snr_db) / 10))
 
 
 def detection_probability(snr_db: ArrayLike, false_alarm: float) -> FloatArray:
@@ -127,7 +131,7 @@ def detection_probability(snr_db: ArrayLike, false_alarm: float) -> FloatArray:
     Raises
     ------
     ValueError
-        If `snr_db` is not finite or `false_alarm` not between 0 and 1.
+        If `snr_db` is not between -3000 and 3000 or `false_alarm` not between 0 and 1.
 
     Notes
     -----
@@ -141,6 +145,6 @@ def detection_probability(snr_db: ArrayLike, false_alarm: float) -> FloatArray:
     """
     from scipy.stats import ncx2  # here: it takes longer to load than all the rest
 
-    snr_db = _checks.finite("snr_db", snr_db)
+    snr_db = _checks.decibels("snr_db", snr_db)
     threshold = -2 * np.log(_checks.probability("false_alarm", false_alarm))
     return ncx2.sf(threshold, 2, 2 * 10 ** (snr_db / 10))

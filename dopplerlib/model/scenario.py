@@ -81,7 +81,7 @@ class Scenario:
 
     def __post_init__(self):
         """Check the fields."""
-        x0 = _checks.finite("x0", self.x0, (6,)).copy()
+        x0 = _checks.moderate("x0", self.x0, (6,)).copy()
         P0 = _checks.covariance("P0", self.P0, 6).copy()
         _checks.instance("array", self.array, RadarArray)
         for name, array, shape in [("x0", x0, (6,)), ("P0", P0, (6, 6))]:
@@ -92,7 +92,7 @@ class Scenario:
         object.__setattr__(self, "P0", P0)
         object.__setattr__(self, "samples", _checks.whole_number("samples", self.samples))
         for name in ("T", "sigma_f", "sigma_p"):
-            object.__setattr__(self, name, _checks.positive_number(name, getattr(self, name)))
+            object.__setattr__(self, name, _checks.moderate_number(name, getattr(self, name)))
 
     @property
     def time(self) -> FloatArray:

@@ -33,7 +33,8 @@ def simulate(
     Raises
     ------
     ValueError
-        If `runs` is not a positive whole number, or `rng` is not a generator.
+        If `scenario` is no `Scenario`, `runs` is not a positive whole number, or `rng` is not a
+        generator.
 
     Notes
     -----
@@ -51,6 +52,7 @@ def simulate(
     >>> truth.shape, z.shape
     ((100, 6), (5, 100, 6))
     """
+    _checks.instance("scenario", scenario, Scenario)
     runs = _checks.whole_number("runs", runs)
     _checks.generator("rng", rng)
     truth = scenario.truth

@@ -22,8 +22,8 @@ def planar_twin(x: ArrayLike) -> FloatArray:
     Raises
     ------
     ValueError
-        If `x` has the wrong shape or is not finite, x or p.v is zero, or the twin would have to
-        be farther to the side than it is from the origin.
+        If `x` has the wrong shape, is not finite or beyond 1e60, x or p.v is zero, or the twin
+        would have to be farther to the side than it is from the origin.
 
     Notes
     -----
@@ -40,15 +40,17 @@ def planar_twin(x: ArrayLike) -> FloatArray:
     >>> bool(np.abs(shifts[1] - shifts[0]).max() < 0.01)
     True
     """
-    x = _checks.finite("x", x, (6,))
+    x = _checks.moderate("x", x, (6,))
     p, v = x[..., :3], x[..., 3:]
     square, w = np.sum(p * p, axis=-1), np.sum(p * v, axis=-1)
     if not ((p[..., 0] != 0) & (w != 0)).all():
         raise ValueError("x must lie off the plane of the array and have p.v other than zero")
-    kappa = (w / square)[..., None]
-    across = 2 * v[..., 1:] / kappa - 3 * p[..., 1:]
-    across_v = v[..., 1:] + kappa * (across - p[..., 1:])
-    left = square - np.sum(across * across, axis=-1)
+    with np.errstate(all="ignore"):
+        kappa = (w / square)[..., None]
+        across = 2 * v[..., 1:] / kappa - 3 * p[..., 1:]
+        across_v = v[..., 1:] + kappa * (across - p[..., 1:])
+        left = square - np.sum(across * across, axis=-1)
+    _checks.estimates("x", left, across_v, what="twin")
     if not (left > 0).all():
         raise ValueError("x must have a twin before the array, but its twin is too far aside")
     ahead = np.copysign(np.sqrt(left), p[..., 0])

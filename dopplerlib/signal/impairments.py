@@ -32,7 +32,12 @@ def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     [(1.5+1j), (0.5-1j)]
     """
     x = _checks.finite_complex("x", x, (None,))
-    return x + _checks.finite_complex("offset", offset)
+    offset = _checks.finite_complex("offset", offset)
+    _checks.check_broadcast("offset", offset.shape, "x", x.shape)
+    with np.errstate(all="ignore"):
+        x = x + offset
+    _checks.estimates("x, offset", x, what="samples")
+    return x
 
 
 def remove_mean(x: ArrayLike) -> ComplexArray:
@@ -94,7 +99,10 @@ def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexA
     """
     x = _checks.finite_complex("x", x, (None,))
     g, phi = _imbalance(gain_db, phase_deg)
-    return x.real + 1j * g * (x.imag * np.cos(phi) + x.real * np.sin(phi))
+    with np.errstate(all="ignore"):
+        x = x.real + 1j * g * (x.imag * np.cos(phi) + x.real * np.sin(phi))
+    _checks.estimates("x, gain_db", x, what="samples")
+    return x
 
 
 def image_rejection(gain_db: float, phase_deg: float) -> float:
@@ -123,7 +131,7 @@ def image_rejection(gain_db: float, phase_deg: float) -> float:
     g, phi = _imbalance(gain_db, phase_deg)
     kept, mirrored = np.abs(1 + g * np.exp(1j * phi)), np.abs(1 - g * np.exp(1j * phi))
     with np.errstate(divide="ignore"):
-        return float(np.float64(kept) ** 2 / mirrored**2)
+        return float((kept / mirrored) ** 2)
 
 
 def correct_iq_imbalance(x: ArrayLike) -> ComplexArray:
@@ -193,7 +201,8 @@ def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
     Raises
     ------
     ValueError
-        If a value is not finite, `full_scale` is not positive, or `bits` is no whole number.
+        If a value is not finite, `full_scale` is not between 1e-60 and 1e60, or `bits` is no whole
+        number up to 52, beyond which a float has no steps of its own.
 
     Notes
     -----
@@ -206,15 +215,18 @@ def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
     [(0.25-0.75j), (0.75+0.25j)]
     """
     x = _checks.finite_complex("x", x, (None,))
-    levels = 2 ** _checks.whole_number("bits", bits)
-    step = 2 * _checks.positive_number("full_scale", full_scale) / levels
+    levels = 2 ** _checks.count("bits", bits, 52)
+    step = 2 * _checks.moderate_number("full_scale", full_scale) / levels
 
     def steps(part):
-        return (np.clip(np.floor(part / step), -levels // 2, levels // 2 - 1) + 0.5) * step
+        with np.errstate(over="ignore"):  # what is far outside is clipped
+            place = np.floor(part / step)
+        return (np.clip(place, -levels // 2, levels // 2 - 1) + 0.5) * step
 
     return steps(x.real) + 1j * steps(x.imag)
 
 
 def _imbalance(gain_db, phase_deg):
-    gain_db = _checks.one_number("gain_db", gain_db)
-    return 10 ** (gain_db / 20), np.radians(_checks.one_number("phase_deg", phase_deg))
+    gain_db = _checks.one_number("gain_db", gain_db, _checks.decibels)
+    phase_deg = _checks.one_number("phase_deg", phase_deg, _checks.moderate)
+    return 10 ** (gain_db / 20), np.radians(phase_deg)

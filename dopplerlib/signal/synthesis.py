@@ -24,7 +24,7 @@ def velocity_profile(
         Times in s.
     v0 : float
         Velocity before the first segment in m/s.
-    segments : sequence of tuple (float, float, float)
+    segments : iterable of tuple (float, float, float)
         Start and end in s, and acceleration between them in m/s^2. Where segments overlap,
         their accelerations add up.
 
@@ -38,7 +38,7 @@ def velocity_profile(
     Raises
     ------
     ValueError
-        If a value is not finite, or a segment does not end after its start.
+        If a value is not finite or beyond 1e60, or a segment does not end after its start.
 
     Examples
     --------
@@ -48,11 +48,14 @@ def velocity_profile(
     >>> v.tolist(), a.tolist()
     ([250.0, 250.0, 245.0, 240.0, 240.0], [0.0, -10.0, -10.0, 0.0, 0.0])
     """
-    t = _checks.finite("t", t, (None,))
-    v = np.full(t.shape, _checks.one_number("v0", v0))
+    t = _checks.moderate("t", t, (None,))
+    v = np.full(t.shape, _checks.one_number("v0", v0, _checks.moderate))
     a = np.zeros(t.shape)
-    for i, segment in enumerate(segments):
-        start, end, acceleration = _checks.finite(f"segments[{i}]", segment, (3,)).tolist()
+    for i, segment in enumerate(_checks.iterable("segments", segments)):
+        numbers = _checks.moderate(f"segments[{i}]", segment, (3,))
+        if numbers.ndim > 1:
+            raise ValueError(f"segments[{i}] must be three numbers, got shape {numbers.shape}")
+        start, end, acceleration = numbers.tolist()
         if not start < end:
             raise ValueError(f"segments[{i}] must end after its start, got {segment}")
         v += acceleration * (np.clip(t, start, end) - start)
@@ -81,7 +84,7 @@ def complex_noise(
     Raises
     ------
     ValueError
-        If `variance` is negative or not finite, or `rng` is not a generator.
+        If `shape` is no shape, `variance` is negative or not finite, or `rng` is not a generator.
 
     Examples
     --------
@@ -93,7 +96,7 @@ def complex_noise(
     variance = _checks.one_number("variance", variance)
     if variance < 0:
         raise ValueError(f"variance must not be negative, got {variance}")
-    noise = rng.standard_normal((*np.atleast_1d(shape), 2)).view(complex)[..., 0]
+    noise = rng.standard_normal((*_checks.shape("shape", shape), 2)).view(complex)[..., 0]
     noise *= np.sqrt(variance / 2)
     return noise
 
@@ -140,9 +143,11 @@ def tone(
     True
     """
     _checks.generator("rng", rng)
-    f, chirp = np.broadcast_arrays(_checks.finite("f", f), _checks.finite("chirp", chirp))
-    fs = _checks.positive_number("fs", fs)
-    n = _checks.whole_number("n", n)
+    f, chirp = _checks.moderate("f", f), _checks.moderate("chirp", chirp)
+    _checks.check_broadcast("chirp", chirp.shape, "f", f.shape)
+    f, chirp = np.broadcast_arrays(f, chirp)
+    fs = _checks.moderate_number("fs", fs)
+    n = _checks.count("n", n, 2**40)
     t = (np.arange(n) - (n - 1) / 2) / fs
     cycles = f[..., None] * t + chirp[..., None] * t**2 / 2
     return _signal(cycles, 1.0, snr_db, rng)
@@ -192,9 +197,9 @@ def iq_from_velocity(
     1j
     """
     _checks.generator("rng", rng)
-    v = _checks.finite("v", v, (None,))
-    T = _checks.positive_number("T", T)
-    wavelength = _checks.positive_number("wavelength", wavelength)
+    v = _checks.moderate("v", v, (None,))
+    T = _checks.moderate_number("T", T)
+    wavelength = _checks.moderate_number("wavelength", wavelength)
     cycles = np.zeros(v.shape)
     np.cumsum((v[..., 1:] + v[..., :-1]) * (T / wavelength), axis=-1, out=cycles[..., 1:])
     return _signal(cycles, 1.0, snr_db, rng, size)
@@ -257,7 +262,7 @@ def iq_from_geometry(
     """
     _checks.generator("rng", rng)
     _checks.instance("array", array, RadarArray)
-    position = _checks.finite("position", position, (None, 3))
+    position = _checks.moderate("position", position, (None, 3))
     power = _AMPLITUDES[_checks.one_of("amplitude", amplitude, tuple(_AMPLITUDES))]
     check_clear_of_sensors("position", position, array)
     r = np.linalg.norm(position[..., None, :, :] - array.positions[:, None], axis=-1)
@@ -267,10 +272,10 @@ def iq_from_geometry(
 def _signal(cycles, amplitude, snr_db, rng, size=None):
     """Return amplitude exp(2 pi j cycles) with a random phase for each record, and noise."""
     if size is not None:
-        cycles = np.broadcast_to(cycles, (_checks.whole_number("size", size), *cycles.shape))
+        cycles = np.broadcast_to(cycles, (_checks.count("size", size, 2**40), *cycles.shape))
     start = rng.uniform(size=(*cycles.shape[:-1], 1))
     x = amplitude * np.exp(2j * np.pi * (cycles + start))
     if snr_db is not None:
-        snr_db = _checks.one_number("snr_db", snr_db)
+        snr_db = _checks.one_number("snr_db", snr_db, _checks.decibels)
         x += complex_noise(x.shape, 10 ** (-snr_db / 10), rng=rng)
     return x

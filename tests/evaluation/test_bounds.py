@@ -171,7 +171,7 @@ RADAR7 = RadarArray(np.vstack([RING.positions, [0.05, 0.02, 0.01]]))
         ({"K": 0}, "K must be a whole number of at least 1"),
         ({"T": 0}, "T must be positive"),
         ({"likelihood": "both"}, "likelihood must be one of 'static', 'moving'"),
-        ({"free": [1, 1, 0]}, "free must be 6 booleans"),
+        ({"free": [1, 1, 0]}, "free must be an array of booleans"),
     ],
 )
 def test_a_wrong_argument_is_named(change, message):
