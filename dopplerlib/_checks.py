@@ -2,6 +2,7 @@
 
 import inspect
 from collections.abc import Iterator, MappingView
+from itertools import chain
 
 import numpy as np
 
@@ -16,7 +17,9 @@ _ROUNDING = 1e-9
 # infinite, NaN or zero, whatever `np.seterr` says, and `estimates` looks at what comes out.
 quiet = np.errstate(all="ignore")
 
-_PLAIN = (float, int, np.ndarray, np.float64)
+_PLAIN = {float, int, np.ndarray, np.float64}
+_LISTS = {list, tuple}
+_SCALARS = {float, int, bool, np.float64, np.bool_}
 
 
 def real(name, value):
@@ -358,11 +361,11 @@ def generator(name, value):
 
 def _numbers(name, value, kinds, wanted):
     """Return `value` as an array whose dtype is of one of `kinds`, or raise."""
-    if isinstance(value, (Iterator, MappingView)):
-        value = list(value)  # NumPy would make one object of it
-    if isinstance(value, (bytes, bytearray, memoryview)):
-        value = str(value)  # NumPy would take it for small numbers
-    good = type(value) in _PLAIN or _nothing_is_lost(name, value, wanted, "b" in kinds)
+    good = True
+    if type(value) not in _PLAIN:
+        if isinstance(value, (Iterator, MappingView)):
+            value = list(value)  # NumPy would make one object of it
+        good = _nothing_is_lost(name, value, wanted, "b" in kinds)
     try:
         array = np.asarray(value)
     except (TypeError, ValueError):  # a ragged nested list
@@ -373,17 +376,30 @@ def _numbers(name, value, kinds, wanted):
 
 
 def _nothing_is_lost(name, value, wanted, boolean):
-    """Return whether NumPy would not mix booleans into numbers; raise if it drops mask or unit."""
-    if isinstance(value, (list, tuple)):
-        kinds = set(map(type, value))  # as fast as NumPy's own look at the list
+    """Return whether NumPy would not mix other things into numbers; raise for masks and units."""
+    level = [value]
+    for depth in range(64):  # as deep as an array can be
+        kinds = set(map(type, level))  # as fast as NumPy's own look at a list
+        for part in () if kinds <= _SCALARS or kinds <= _LISTS else level:
+            if isinstance(part, (bytes, bytearray, memoryview)):
+                return False  # NumPy would take them for small numbers
+            if type(part) is np.ndarray:
+                kinds.add(part.dtype.type)
+            elif type(part) not in _SCALARS:
+                _check_plain(name, part, wanted)
         if not boolean and not kinds.isdisjoint((bool, np.bool_)):
             return False
-        return kinds.issubset((float, int, bool, np.float64)) or all(
-            boolean or part.dtype.kind != "b"
-            if type(part) is np.ndarray
-            else type(part) in _PLAIN or _nothing_is_lost(name, part, wanted, boolean)
-            for part in value
-        )
+        if kinds <= _SCALARS:
+            break
+        nested = level if kinds <= _LISTS else [p for p in level if isinstance(p, (list, tuple))]
+        if depth > 8:  # a list that holds itself is looked at once
+            nested = {id(part): part for part in nested}.values()
+        level = list(chain.from_iterable(nested))
+    return True
+
+
+def _check_plain(name, value, wanted):
+    """Raise if NumPy would drop a mask or a unit of `value`."""
     if isinstance(value, np.ma.MaskedArray) or _has_data(value, "mask"):
         raise ValueError(
             f"{name} must not be a masked array, whose mask would be lost, got {_short(value)}"
@@ -393,7 +409,6 @@ def _nothing_is_lost(name, value, wanted, boolean):
             f"{name} must be an array of {wanted} without a unit, which would be lost, "
             f"got {_short(value)}"
         )
-    return True
 
 
 def _has_data(value, attribute):
