@@ -34,18 +34,19 @@ def _ekf():
     arrays = {
         "work": {
             "PREDICTED": STATE,
-            "COVARIANCE": ekf.COVARIANCE,
+            "FACTORS": ekf.FACTORS,
             "CORRECTION": ekf.CORRECTION,
             "NIS": [ekf.NIS],
-            "PROCESS_NOISE": ekf.PROCESS_NOISE,
+            "COVARIANCE": ekf.COVARIANCE,
             "ROWS": [],
         },
         "sensor": {
             "MEASUREMENT": [ekf.MEASUREMENT],
-            "SEEN": [ekf.SEEN],
+            "VARIANCE": [ekf.VARIANCE],
             "INNOVATION": [ekf.INNOVATION],
             "GRADIENT": GRADIENT,
             "PROJECTION": ekf.PROJECTION,
+            "WEIGHTED": ekf.WEIGHTED,
             "SENSOR_ROWS": [],
         },
     }
@@ -64,13 +65,11 @@ def _ekf():
             _head("One cycle of the EKF for constant velocity and Doppler measurements."),
             "from numpy import sqrt\n",
             "# First row of each quantity in the array `work`, and in `sensor`, of which every\n"
-            "# sensor has one. Of a symmetric matrix the upper triangle is kept, row by row.",
+            "# sensor has one. Of matrices the upper triangle is kept, row by row. That of the\n"
+            "# factors of P = U D U' holds U, and D in place of the ones on the diagonal of U.",
             *layout,
             "\n",
-            python_lanes(ekf.predict_block(), places) + "\n",
-            python_lanes(ekf.linearize_block(), places) + "\n",
-            python_lanes(ekf.project_block(), places) + "\n",
-            python_lanes(ekf.update_block(), places),
+            "\n\n".join(python_lanes(block, places) for block in ekf.blocks()),
         ]
     )
 

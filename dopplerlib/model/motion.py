@@ -47,14 +47,20 @@ def constant_velocity(
     >>> int(np.linalg.matrix_rank(Q)), int(np.linalg.matrix_rank(Q3))
     (1, 3)
     """
-    T = _checks.deviation("T", T)[..., None, None]
+    T = _checks.deviation("T", T)
     sigma_p = _checks.one_number("sigma_p", sigma_p, _checks.deviation)
     _checks.one_of("noise", noise, ("common", "independent"))
-    F = np.eye(6) + T * np.eye(6, k=3)
-    axes = np.ones((3, 1)) if noise == "common" else np.eye(3)
-    G = np.concatenate([T**2 / 2 * axes, T * axes], axis=-2)
+    F = np.eye(6) + T[..., None, None] * np.eye(6, k=3)
+    G = acceleration_gain(T, noise)
     with np.errstate(over="ignore", invalid="ignore"):
         Q = sigma_p**2 * (G @ np.swapaxes(G, -1, -2))
     if not np.isfinite(Q).all():
         raise ValueError(f"T must give a finite Q with sigma_p = {sigma_p}, got {T.max()}")
     return F, Q
+
+
+def acceleration_gain(T, noise):
+    """Return G of `constant_velocity`, (..., 6, 1) or (..., 6, 3): Q is sigma_p^2 G G' (Eq 9)."""
+    T = T[..., None, None]
+    axes = np.ones((3, 1)) if noise == "common" else np.eye(3)
+    return np.concatenate([T**2 / 2 * axes, T * axes], axis=-2)

@@ -1,9 +1,14 @@
 """The mathematics before it is printed: proved with symbols."""
 
+import random
+from fractions import Fraction
+
+import numpy as np
 import pytest
 import sympy as sp
 
 from dopplerlib.derive import doppler, ekf
+from dopplerlib.derive.printers import python_function
 
 d = sp.Matrix(doppler.SENSOR) - sp.Matrix(doppler.STATE[:3])
 rho = sp.sqrt(d.dot(d))
@@ -59,12 +64,40 @@ def test_the_transition_moves_the_position_by_one_interval():
     assert moved == sp.Matrix([*(x + ekf.T * v), *v])
 
 
-def test_the_printed_time_update_is_f_p_f_plus_q():
-    block = ekf.predict_block()
-    values = {}
-    for stage in block.stages:
-        values |= {str(name): expression for name, expression in stage.assignments}
-    f = ekf.transition()
-    expected = f @ ekf.symmetric(ekf.COVARIANCE) @ f.T + ekf.symmetric(ekf.PROCESS_NOISE)
-    for (i, j), symbol in zip(ekf.UPPER, ekf.COVARIANCE, strict=True):
-        assert sp.expand(values[f"{symbol.name}_new"] - expected[i, j]) == 0
+def in_fractions(block, values):
+    """Return the values of all symbols by name after the printed `block`, as exact fractions."""
+    program = {}
+    # What keeps 0 / 0 out has no place in exact arithmetic.
+    exec(python_function(block).replace(repr(float(ekf.NOTHING)), "0"), program)
+    outputs = program[block.name](*(values[symbol.name] for symbol in block.inputs))
+    names = [symbol.name.removesuffix("_new") for symbol in block.outputs]
+    return values | dict(zip(names, outputs, strict=True))
+
+
+def matrix(values, entries):
+    return np.array([[values.get(str(entry), entry) for entry in row] for row in entries.tolist()])
+
+
+def covariance(values):
+    U, D = (matrix(values, factor) for factor in ekf.factors())
+    return U @ D @ U.T
+
+
+@pytest.mark.parametrize("step", ["predict", "add_noise", "update", "covariance"])
+def test_the_steps_of_the_factors_are_those_of_the_covariance(step):
+    rng = random.Random(2016)
+    block = next(block for block in ekf.blocks() if block.name == step)
+    names = {symbol.name for symbol in (*block.inputs, *ekf.FACTORS, *doppler.GRADIENT, *ekf.NOISE)}
+    values = {name: Fraction(rng.randint(1, 99), rng.randint(1, 99)) for name in sorted(names)}
+    after, P = in_fractions(block, values), covariance(values)
+    g, h = (np.array([values[s.name] for s in v]) for v in (ekf.NOISE, doppler.GRADIENT))
+    if step == "predict":
+        F = matrix(values, ekf.transition())
+        assert (covariance(after) == F @ P @ F.T).all()
+    elif step == "add_noise":
+        assert (covariance(after) == P + np.outer(g, g)).all()
+    elif step == "update":
+        s = h @ P @ h + values["variance"]
+        assert (covariance(after) == P - np.outer(P @ h, P @ h) / s).all()
+    else:
+        assert [after[symbol.name] for symbol in ekf.COVARIANCE] == P[np.triu_indices(6)].tolist()

@@ -19,22 +19,24 @@ from dopplerlib.derive.printers import c99_function, javascript_function
 from dopplerlib.kernels import doppler, ekf
 
 RUNS, SENSORS, LANES = 37, 6, 16  # 37 leaves the last group of lanes partly empty
-KERNELS = {name: getattr(ekf, name) for name in ("predict", "linearize", "project", "update")}
-BLOCKS = {name: getattr(derive, f"{name}_block")() for name in KERNELS}
+BLOCKS = {block.name: block for block in derive.blocks()}
+KERNELS = {name: getattr(ekf, name) for name in BLOCKS}
+WITH_SENSOR = {"linearize", "project", "update"}
 BLOCKS["doppler_shift_and_gradient"] = gradient_block()
 
 PLACES = {}  # array and row of each symbol, by name
 for _array, _start, _symbols in [
     ("work", ekf.PREDICTED, STATE),
-    ("work", ekf.COVARIANCE, derive.COVARIANCE),
+    ("work", ekf.FACTORS, derive.FACTORS),
     ("work", ekf.CORRECTION, derive.CORRECTION),
     ("work", ekf.NIS, [derive.NIS]),
-    ("work", ekf.PROCESS_NOISE, derive.PROCESS_NOISE),
+    ("work", ekf.COVARIANCE, derive.COVARIANCE),
     ("sensor", ekf.MEASUREMENT, [derive.MEASUREMENT]),
-    ("sensor", ekf.SEEN, [derive.SEEN]),
+    ("sensor", ekf.VARIANCE, [derive.VARIANCE]),
     ("sensor", ekf.INNOVATION, [derive.INNOVATION]),
     ("sensor", ekf.GRADIENT, GRADIENT),
     ("sensor", ekf.PROJECTION, derive.PROJECTION),
+    ("sensor", ekf.WEIGHTED, derive.WEIGHTED),
 ]:
     for _row, _symbol in enumerate(_symbols, _start):
         PLACES[_symbol.name] = PLACES[f"{_symbol.name}_new"] = _array, _row
@@ -42,25 +44,27 @@ for _array, _start, _symbols in [
 
 @pytest.fixture(scope="module")
 def cycle(random_cycle):
-    return random_cycle(np.random.default_rng(2016), SENSORS, RUNS, missing=0.1)
+    return random_cycle(np.random.default_rng(2016), SENSORS, RUNS)
 
 
 def run(cycle, kernels, work, sensors, lanes=1, lane=0):
-    """Run a cycle on `work` and one array for each sensor, which hold its measurements."""
-    parameters = list(zip(sensors, cycle.sensors.tolist(), cycle.variance.tolist(), strict=True))
+    """Run a cycle on `work` and one array for each sensor, which hold what it measured."""
     kernels["predict"](work, lanes, lane, cycle.T)
-    for sensor, position, _ in parameters:
+    for g in cycle.G.T.tolist():
+        kernels["add_noise"](work, lanes, lane, *g)
+    for sensor, position in zip(sensors, cycle.sensors.tolist(), strict=True):
         kernels["linearize"](work, sensor, lanes, lane, *position, cycle.g)
         kernels["project"](work, sensor, lanes, lane)
-    for sensor, _, variance in parameters:
-        kernels["update"](work, sensor, lanes, lane, variance)
+    for sensor in sensors:
+        kernels["update"](work, sensor, lanes, lane)
+    kernels["covariance"](work, lanes, lane)
 
 
 def sensor_rows(cycle):
     """Return the arrays of the sensors before the cycle, (SENSORS, SENSOR_ROWS, RUNS)."""
     rows = np.zeros((SENSORS, ekf.SENSOR_ROWS, RUNS))
     for n in range(SENSORS):
-        rows[n, ekf.MEASUREMENT], rows[n, ekf.SEEN] = cycle.measured(n)
+        rows[n, ekf.MEASUREMENT], rows[n, ekf.VARIANCE] = cycle.z[:, n], cycle.variance[n]
     return rows
 
 
@@ -110,7 +114,7 @@ def compiled():
             for lane in range(width):
                 inner(work, lanes, lane, *arguments)
 
-        return without if function is ekf.predict else with_sensor
+        return with_sensor if function.__name__ in WITH_SENSOR else without
 
     return {name: looped(function) for name, function in KERNELS.items()}
 
@@ -137,7 +141,7 @@ def with_scalars(call):
     def kernel(name):
         def function(*arguments):
             arrays, scalars = {"work": arguments[0]}, list(arguments[3:])
-            if name != "predict":
+            if name in WITH_SENSOR:
                 arrays["sensor"], scalars = arguments[1], list(arguments[4:])
             inputs = [
                 arrays[PLACES[symbol.name][0]][PLACES[symbol.name][1]]
