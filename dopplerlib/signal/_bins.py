@@ -6,13 +6,56 @@ import scipy.fft
 from .. import _checks
 from .._records import record
 
+_LARGE = 1e140  # energies; squares of what is beyond leave the range of double precision
+
 
 def samples(x, fs, least=2):
     """Return checked IQ samples and their sampling rate."""
     x = _checks.finite_complex("x", x, (None,))
     if x.shape[-1] < least:
         raise ValueError(f"x must have at least {least} samples, got {x.shape[-1]}")
-    return x, _checks.positive_number("fs", fs)
+    return in_range(x), _checks.positive_number("fs", fs)
+
+
+def in_range(x):
+    """Return windows (..., n), each scaled by a power of two if its squares could leave the range.
+
+    The frequency of a tone does not depend on its amplitude. Other windows stay as they are.
+    """
+    parts = np.ascontiguousarray(x).view(float)
+    with np.errstate(over="ignore", under="ignore"):
+        energy = np.einsum("...i,...i->...", parts, parts)
+    far = ~((energy > 1 / _LARGE) & (energy < _LARGE))
+    if not far.any():
+        return x
+    exponent = np.where(far, -np.frexp(np.abs(parts).max(axis=-1))[1], 0)
+    return np.ldexp(parts, exponent[..., None]).view(complex)
+
+
+def unmoving(x, rows, firsts, n):
+    """Return which windows of n samples, beginning at (row, first) of x (R, samples), never move.
+
+    Noise moves every sample of a module that measures: the same value n times tells no frequency,
+    be it zero or not.
+    """
+    start = x[rows, firsts]
+    same = (start == x[rows, firsts + 1]) & (start == x[rows, firsts + n - 1])
+    for w in np.flatnonzero(same):
+        same[w] = (x[rows[w], firsts[w] : firsts[w] + n] == start[w]).all()
+    return same
+
+
+def still_windows(x):
+    """Return which windows (..., n) never move, shape (...)."""
+    rows = x.reshape(-1, x.shape[-1])
+    place = np.arange(len(rows))
+    return unmoving(rows, place, np.zeros_like(place), rows.shape[1]).reshape(x.shape[:-1])
+
+
+def ratio(a, b):
+    """Return a / b, and NaN where b is zero or NaN."""
+    some = (b != 0) & (b == b)
+    return np.divide(a, b, out=np.full(np.shape(b), np.nan, dtype=b.dtype), where=some)
 
 
 def limits(band, fs):
@@ -33,6 +76,7 @@ class Bins:
     """The transforms of windows, and which of their bins lie in the band."""
 
     X: np.ndarray  # (..., nfft)
+    still: np.ndarray  # (...), whether the window never moves
     inside: np.ndarray  # (bins,)
     n: int
     nfft: int
@@ -55,8 +99,11 @@ class Bins:
         return np.take_along_axis(self.X, k[..., None], axis=-1)[..., 0]
 
     def hertz(self, k):
-        """Return the frequency of bin k, which may be a fraction; around the end of a full band."""
-        f = k * self.fs / self.nfft
+        """Return the frequency of bin k, which may be a fraction; around the end of a full band.
+
+        NaN for a window that never moves.
+        """
+        f = np.where(self.still, np.nan, k) * self.fs / self.nfft
         return self.low + (f - self.low) % self.fs if self.circular else f
 
 
@@ -73,7 +120,7 @@ def transform(x, fs, band, nfft=None, least=2):
     if last < first:
         raise ValueError(f"band must hold a bin, a multiple of {fs / nfft:g} Hz, got {band}")
     inside = np.arange(first, last + 1)
-    return Bins(scipy.fft.fft(x, nfft), inside, n, nfft, fs, low, circular)
+    return Bins(scipy.fft.fft(x, nfft), still_windows(x), inside, n, nfft, fs, low, circular)
 
 
 def about_mean(x):

@@ -6,11 +6,13 @@ import numpy as np
 import scipy.fft
 
 from .._typing import ArrayLike, ComplexArray, FloatArray, IntArray
-from ._bins import about_mean, limits, samples, sum_of_ones
+from ._bins import about_mean, limits, samples, sum_of_ones, unmoving
 
 _CHUNK = 128  # transforms at a time: these stay in the processor's cache
 _PAD = 4  # points of the grid in a bin, for the search beside a constant
 _STEPS = 60
+_FAINT = 1e-15  # of the loudest sample; squares in single precision end at 1e-19
+_FIRST = np.zeros(1, dtype=int)
 _NEAREST = 1e-3  # bins from the constant: nearer than that a tone cannot be told from it
 
 
@@ -33,7 +35,8 @@ def ml_frequency(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz, positive when the target approaches; NaN for samples that are all zero.
+        Frequencies in Hz, positive when the target approaches; NaN for samples that are all the
+        same: a module that measures has noise.
 
     Raises
     ------
@@ -85,9 +88,9 @@ def peaks(
     Returns
     -------
     f : ndarray, shape (W,)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for a window that never moves.
     power : ndarray, shape (W,)
-        Square of the absolute value of the Fourier sum there.
+        Square of the absolute value of the Fourier sum there; 0 where `f` is NaN.
     """
     from ._ml_kernel import compiled  # here: numba takes half a second to load
 
@@ -97,7 +100,8 @@ def peaks(
     # The search for the right peak needs single precision, in the range of 1; the rest is double.
     re, im = x.real.ravel(), x.imag.ravel()
     largest = max(np.abs(re).max(initial=0.0), np.abs(im).max(initial=0.0))
-    coarse = (x / largest if largest > 0 else x).astype(np.complex64)
+    with np.errstate(under="ignore"):
+        coarse = (x / largest if largest > 0 else x).astype(np.complex64)
     starts = rows * x.shape[1] + firsts
     windows = np.lib.stride_tricks.sliding_window_view(coarse.ravel(), n)
     f, power = np.empty(len(starts)), np.empty(len(starts))
@@ -107,7 +111,17 @@ def peaks(
         compiled(
             X, re, im, starts[part], n, low * n / fs, high * n / fs, circular, f[part], power[part]
         )
-    return f * (fs / n), power
+    f *= fs / n
+    still = unmoving(x, rows, firsts, n)
+    f[still], power[still] = np.nan, 0.0
+    # Beside a moment that is louder by far, single precision has lost a window.
+    with np.errstate(under="ignore"):
+        lost = np.flatnonzero(~still & ~(power > (_FAINT * largest) ** 2))
+    for w in lost:
+        window = x[rows[w] : rows[w] + 1, firsts[w] : firsts[w] + n]
+        if np.abs(window).max() < _FAINT * largest:
+            f[w : w + 1], power[w : w + 1] = peaks(window, _FIRST, _FIRST, n, fs, band)
+    return f, power
 
 
 def ml_frequency_dc(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:

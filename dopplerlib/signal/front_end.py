@@ -1,10 +1,23 @@
 """The digital low-pass, and the rate that is enough after it."""
 
+from typing import overload
+
+import numpy as np
+
 from .. import _checks
-from .._typing import ArrayLike, ComplexArray
+from .._typing import ArrayLike, BoolArray, ComplexArray
+from .validity import known_samples
 
 
-def lowpass(x: ArrayLike, fs: float, cutoff: float, taps: int) -> tuple[ComplexArray, float]:
+@overload
+def lowpass(
+    x: ArrayLike, fs: float, cutoff: float, taps: int, valid: None = None
+) -> tuple[ComplexArray, float]: ...
+@overload
+def lowpass(
+    x: ArrayLike, fs: float, cutoff: float, taps: int, valid: ArrayLike
+) -> tuple[ComplexArray, float, BoolArray]: ...
+def lowpass(x, fs, cutoff, taps, valid=None):
     """Return IQ samples after a low-pass of linear phase, and by how much it delays them.
 
     Parameters
@@ -17,6 +30,8 @@ def lowpass(x: ArrayLike, fs: float, cutoff: float, taps: int) -> tuple[ComplexA
         Frequency in Hz at which the filter lets half of the amplitude through; less than fs / 2.
     taps : int
         Length of the filter, odd.
+    valid : array_like of bool, broadcast to (..., n), optional
+        Which samples are measurements, see `valid_samples`.
 
     Returns
     -------
@@ -24,11 +39,14 @@ def lowpass(x: ArrayLike, fs: float, cutoff: float, taps: int) -> tuple[ComplexA
         The first ``taps - 1`` samples come from a filter that is still filling.
     delay : float
         Group delay in s: what y shows at a time t happened at t - delay.
+    valid : ndarray of bool, shape (..., n)
+        Only if `valid` was given: which of y are made of valid samples alone. False for the length
+        of the filter after each one that is not, and while it is filling.
 
     Raises
     ------
     ValueError
-        If a value is not finite, `cutoff` is not between 0 and fs / 2, or `taps` is even.
+        If a valid sample is not finite, `cutoff` is not between 0 and fs / 2, or `taps` is even.
 
     Notes
     -----
@@ -43,7 +61,7 @@ def lowpass(x: ArrayLike, fs: float, cutoff: float, taps: int) -> tuple[ComplexA
     """
     from scipy import signal  # here: it takes long to load
 
-    x = _checks.finite_complex("x", x, (None,))
+    x, valid = known_samples("x", x, valid, (None,))
     fs = _checks.positive_number("fs", fs)
     taps = _checks.whole_number("taps", taps)
     if taps % 2 == 0:
@@ -53,12 +71,19 @@ def lowpass(x: ArrayLike, fs: float, cutoff: float, taps: int) -> tuple[ComplexA
         raise ValueError(f"cutoff must be less than fs / 2 = {fs / 2:g}, got {cutoff:g}")
     b = signal.firwin(taps, cutoff, fs=fs)
     y = signal.oaconvolve(x, b.reshape((1,) * (x.ndim - 1) + (-1,)), axes=-1)
-    return y[..., : x.shape[-1]], (taps - 1) / 2 / fs
+    y, delay = y[..., : x.shape[-1]], (taps - 1) / 2 / fs
+    return (y, delay) if valid is None else (y, delay, _filtered(valid, taps))
 
 
+@overload
 def lowpass_decimate(
-    x: ArrayLike, fs: float, factor: int, taps: int | None = None
-) -> tuple[ComplexArray, float, float]:
+    x: ArrayLike, fs: float, factor: int, taps: int | None = None, valid: None = None
+) -> tuple[ComplexArray, float, float]: ...
+@overload
+def lowpass_decimate(
+    x: ArrayLike, fs: float, factor: int, taps: int | None = None, *, valid: ArrayLike
+) -> tuple[ComplexArray, float, float, BoolArray]: ...
+def lowpass_decimate(x, fs, factor, taps=None, valid=None):
     """Return IQ samples at a lower rate, low-passed before, and by how much they are delayed.
 
     Parameters
@@ -71,6 +96,8 @@ def lowpass_decimate(
         Every how many samples one is kept.
     taps : int, optional
         Length of the filter, odd; 20 for each of the `factor` and one more if None.
+    valid : array_like of bool, broadcast to (..., n), optional
+        Which samples are measurements, see `valid_samples`.
 
     Returns
     -------
@@ -81,6 +108,8 @@ def lowpass_decimate(
         New sampling rate in Hz.
     delay : float
         Group delay in s: y[m] shows what happened at m / fs_out - delay.
+    valid : ndarray of bool, shape (..., ceil(n / factor))
+        Only if `valid` was given: which of y are made of valid samples alone.
 
     Raises
     ------
@@ -102,7 +131,20 @@ def lowpass_decimate(
     factor = _checks.whole_number("factor", factor)
     fs = _checks.positive_number("fs", fs)
     if factor == 1:
-        return _checks.finite_complex("x", x, (None,)), fs, 0.0
+        x, valid = known_samples("x", x, valid, (None,))
+        return (x, fs, 0.0) if valid is None else (x, fs, 0.0, valid)
     taps = 20 * factor + 1 if taps is None else taps
-    y, delay = lowpass(x, fs, fs / (2 * factor), taps)
-    return y[..., ::factor], fs / factor, delay
+    y, delay, *kept = lowpass(x, fs, fs / (2 * factor), taps, valid)
+    return y[..., ::factor], fs / factor, delay, *(v[..., ::factor] for v in kept)
+
+
+def _filtered(valid, taps):
+    """Return which outputs of a filter of so many taps are made of valid samples alone."""
+    whole = np.zeros(valid.shape, dtype=bool)
+    count = np.cumsum(valid, axis=-1)
+    if valid.shape[-1] >= taps:
+        before = np.concatenate(
+            [np.zeros((*valid.shape[:-1], 1), int), count[..., :-taps]], axis=-1
+        )
+        whole[..., taps - 1 :] = count[..., taps - 1 :] - before == taps
+    return whole

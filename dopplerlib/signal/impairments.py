@@ -3,8 +3,9 @@
 import numpy as np
 
 from .. import _checks
-from .._typing import ArrayLike, ComplexArray
-from ._bins import about_mean
+from .._typing import ArrayLike, BoolArray, ComplexArray
+from ._bins import about_mean, in_range
+from .validity import known_samples
 
 
 def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
@@ -40,7 +41,7 @@ def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     return x
 
 
-def remove_mean(x: ArrayLike) -> ComplexArray:
+def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
     """Return IQ samples less their mean over the last axis.
 
     The mean of a tone is not zero unless the record holds whole cycles of it: this takes part of a
@@ -50,23 +51,35 @@ def remove_mean(x: ArrayLike) -> ComplexArray:
     ----------
     x : array_like of complex, shape (..., n)
         IQ samples.
+    valid : array_like of bool, broadcast to (..., n), optional
+        Which samples are measurements, see `valid_samples`; all if None.
 
     Returns
     -------
     ndarray of complex, shape (..., n)
+        The mean is that of the valid samples; the others become 0.
 
     Raises
     ------
     ValueError
-        If a value is not finite.
+        If a valid sample is not finite.
 
     Examples
     --------
     >>> remove_mean([1, 2, 3]).real.tolist()
     [-1.0, 0.0, 1.0]
+    >>> remove_mean([1, 2, 9], [True, True, False]).real.tolist()
+    [-0.5, 0.5, 0.0]
     """
-    x = _checks.finite_complex("x", x, (None,))
-    return about_mean(x)
+    x, valid = known_samples("x", x, valid, (None,))
+    if not x.size:
+        return x
+    if valid is None:
+        return about_mean(x)
+    first = np.take_along_axis(x, valid.argmax(axis=-1, keepdims=True), axis=-1)
+    x = np.where(valid, x - first, 0.0)
+    mean = x.sum(axis=-1, keepdims=True) / np.maximum(valid.sum(axis=-1, keepdims=True), 1)
+    return np.where(valid, x - mean, 0.0)
 
 
 def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexArray:
@@ -134,7 +147,7 @@ def image_rejection(gain_db: float, phase_deg: float) -> float:
         return float((kept / mirrored) ** 2)
 
 
-def correct_iq_imbalance(x: ArrayLike) -> ComplexArray:
+def correct_iq_imbalance(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
     """Return IQ samples with branches of equal power and at right angles.
 
     Gain and angle are found from the samples themselves: in those of an ideal mixer I and Q have
@@ -145,6 +158,9 @@ def correct_iq_imbalance(x: ArrayLike) -> ComplexArray:
     ----------
     x : array_like of complex, shape (..., n)
         IQ samples with mean zero.
+    valid : array_like of bool, broadcast to (..., n), optional
+        Which samples are measurements, see `valid_samples`; all if None. Powers and correlation are
+        those of the valid samples; the others become 0.
 
     Returns
     -------
@@ -154,8 +170,8 @@ def correct_iq_imbalance(x: ArrayLike) -> ComplexArray:
     Raises
     ------
     ValueError
-        If a value is not finite, or if in a record with a signal I and Q are proportional: then
-        nothing tells them apart.
+        If a valid sample is not finite, or if in a record with a signal I and Q are proportional:
+        then nothing tells them apart.
 
     Examples
     --------
@@ -163,10 +179,13 @@ def correct_iq_imbalance(x: ArrayLike) -> ComplexArray:
     >>> bool(np.allclose(correct_iq_imbalance(add_iq_imbalance(x, 1.0, 5.0)), x))
     True
     """
-    x = _checks.finite_complex("x", x, (None,))
-    ii = np.mean(x.real**2, axis=-1, keepdims=True)
-    iq = np.mean(x.real * x.imag, axis=-1, keepdims=True)
-    qq = np.mean(x.imag**2, axis=-1, keepdims=True)
+    x, valid = known_samples("x", x, valid, (None,))
+    near = in_range(x)
+    count = x.shape[-1] if valid is None else valid.sum(axis=-1, keepdims=True)
+    ii, iq, qq = (
+        np.sum(product, axis=-1, keepdims=True) / np.maximum(count, 1)
+        for product in (near.real**2, near.real * near.imag, near.imag**2)
+    )
     left = ii * qq - iq**2  # what of Q does not follow I
     dead = (ii == 0) & (qq == 0)
     good = (left > 1e-12 * ii * qq) | dead

@@ -2,7 +2,9 @@
 
 All take IQ samples ``x (..., n)`` and give frequencies ``(...)`` in Hz, positive when the target
 approaches. They look for the highest bin in the ``band``, (lowest, highest) in Hz; None is from
--fs/2 to fs/2. A band from 0 to fs is as good, for targets that only approach.
+-fs/2 to fs/2. A band from 0 to fs is as good, for targets that only approach. A window whose
+samples are all the same, be they zero or not, has no frequency: a module that measures has noise.
+It gives NaN, and so does one whose bins leave the form undecided.
 """
 
 from collections.abc import Sequence
@@ -12,7 +14,9 @@ import numpy as np
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
-from ._bins import transform
+from ._bins import in_range, ratio, transform
+
+_LEAST = 1e-300  # stands for an empty bin, which has no logarithm
 
 
 def peak_bin(
@@ -34,7 +38,7 @@ def peak_bin(
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz, multiples of fs / nfft.
+        Frequencies in Hz, multiples of fs / nfft; NaN for samples that are all the same.
 
     Raises
     ------
@@ -92,8 +96,8 @@ def parabolic(
     k = bins.peak()
     y = [np.abs(bins.at(k + step)) for step in (-1, 0, 1)]
     if scale == "log":
-        y = [np.log(value) for value in y]
-    return bins.hertz(k + (y[0] - y[2]) / (2 * (y[0] - 2 * y[1] + y[2])))
+        y = [np.log(np.maximum(value, _LEAST)) for value in y]
+    return bins.hertz(k + ratio(y[0] - y[2], 2 * (y[0] - 2 * y[1] + y[2])))
 
 
 def parabolic_three_highest(
@@ -141,8 +145,8 @@ def parabolic_three_highest(
     (k2, k1, k0), (y2, y1, y0) = np.moveaxis(k, -1, 0), np.moveaxis(y, -1, 0)
     first = (y1 - y0) / (k1 - k0)
     second = ((y2 - y1) / (k2 - k1) - first) / (k2 - k0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return (k0 + (k1 - k0) / 2 - first / (2 * second)) * bins.fs / bins.nfft
+    vertex = k0 + (k1 - k0) / 2 - ratio(first, 2 * second)
+    return np.where(bins.still, np.nan, vertex) * bins.fs / bins.nfft
 
 
 def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
@@ -320,26 +324,26 @@ def aboutanios_mulgrew(
     iterations = _checks.whole_number("iterations", iterations)
     bins = transform(x, fs, band)
     k = bins.peak()
-    x = np.asarray(x)
+    x = in_range(np.asarray(x, dtype=complex))
     t = np.arange(bins.n) / bins.n
     offset = np.zeros(k.shape)
     for _ in range(iterations):
         turned = x * np.exp(-2j * np.pi * t * (k + offset)[..., None])
         left, right = turned @ np.exp(1j * np.pi * t), turned @ np.exp(-1j * np.pi * t)
-        offset = offset + ((right + left) / (right - left)).real / 2
+        offset = offset + ratio(right + left, right - left).real / 2
     return bins.hertz(k + offset)
 
 
 def _jacobsen(bins, k):
     left, here, right = (bins.at(k + step) for step in (-1, 0, 1))
-    return ((left - right) / (2 * here - left - right)).real
+    return ratio(left - right, 2 * here - left - right).real
 
 
 def _quinn(bins, k):
     """Return where the tone lies after each neighbor, in bins."""
     here = bins.at(k)
-    left, right = (bins.at(k - 1) / here).real, (bins.at(k + 1) / here).real
-    return left / (1 - left), -right / (1 - right)
+    left, right = (ratio(bins.at(k + step), here).real for step in (-1, 1))
+    return ratio(left, 1 - left), ratio(-right, 1 - right)
 
 
 def _kappa(x):

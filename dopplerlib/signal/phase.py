@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
-from ._bins import limits, samples
+from ._bins import limits, samples, still_windows
 
 
 def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
@@ -24,7 +24,8 @@ def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatAr
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for samples that are all the same, and where no product of two
+        samples tells a phase.
 
     Raises
     ------
@@ -50,7 +51,8 @@ def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatAr
     steps = x[..., 1:] * x[..., :-1].conj() * np.exp(-2j * np.pi * middle / fs)
     i = np.arange(1, n)
     weights = 6 * i * (n - i) / (n * (n**2 - 1))
-    return middle + np.angle(steps) @ weights * fs / (2 * np.pi)
+    f = middle + np.angle(steps) @ weights * fs / (2 * np.pi)
+    return np.where(still_windows(x) | ~steps.any(axis=-1), np.nan, f)
 
 
 def pulse_pair(
@@ -73,7 +75,8 @@ def pulse_pair(
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for samples that are all the same, and where no product of two
+        samples tells a phase.
 
     Raises
     ------
@@ -100,4 +103,5 @@ def pulse_pair(
     middle = (low + high) / 2
     pair = np.sum(x[..., lag:] * x[..., :-lag].conj(), axis=-1)
     pair = pair * np.exp(-2j * np.pi * middle * lag / fs)
-    return middle + np.angle(pair) * fs / (2 * np.pi * lag)
+    f = middle + np.angle(pair) * fs / (2 * np.pi * lag)
+    return np.where(still_windows(x) | (pair == 0), np.nan, f)

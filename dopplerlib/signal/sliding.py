@@ -8,19 +8,22 @@ import numpy as np
 from .. import _checks
 from .._records import record
 from .._typing import ArrayLike, FloatArray
-from ._bins import about_mean, sum_of_ones
+from ._bins import about_mean, sum_of_ones, unmoving
 from .frequency import ml_frequency, ml_frequency_dc, peaks
 from .laws import crlb_frequency_std, crlb_frequency_std_dc
+from .validity import known_samples
 
 _TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}
 _AT_ONCE = 2**14  # samples in the windows of one call of an estimator: a quarter of a megabyte
+_LARGEST = 1e140  # amplitude; beyond, the energy of a window may not be finite
+_FINEST = 1e-6  # bins: so much the search for the peak leaves, see `_ml_kernel`
 
 
 @record
 class DopplerRecord:
     """Doppler shifts from windows of IQ samples.
 
-    A window may be weak, or come from a module that is dead: then `frequency` says little or
+    A window may be weak, or hold samples that are no measurements: then `frequency` says little or
     nothing, and the others are to go on. For a filter, take `measurements()`.
 
     Attributes
@@ -28,12 +31,12 @@ class DopplerRecord:
     time : ndarray, shape (K,)
         Time of each window in s, counted from the first sample, as tagged.
     frequency : ndarray, shape (..., K, S)
-        Doppler shifts in Hz, however weak the signal is; NaN where there is none: the samples are
-        all zero (all the same, if a constant is estimated too), or the estimator finds none.
+        Doppler shifts in Hz, however weak the signal is; NaN where there is none: a sample is not
+        valid, all are the same, or the estimator finds none.
     amp2 : ndarray, shape (..., K, S)
         Squares of the amplitudes at these frequencies; 0 where `frequency` is NaN.
     noise_variance : ndarray, shape (..., K, S)
-        Estimated variances of a complex noise sample.
+        Estimated variances of a complex noise sample; NaN where a sample is not valid.
     window : int
         Samples of a window.
     hop : int
@@ -65,7 +68,7 @@ class DopplerRecord:
         # The noise variance is chi-square distributed, with 2 n - unknowns degrees of freedom.
         dof = n - unknowns / 2
         size = np.where(np.isnan(self.frequency), 1.0, self._size())
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(all="ignore"):
             ratio = self.amp2 / self.noise_variance * ((dof - 1) / dof) - 1.5 / size
         return np.where(self.amp2 > 0, ratio, 0.0)
 
@@ -73,9 +76,11 @@ class DopplerRecord:
     def frequency_std(self) -> FloatArray:
         """Standard deviation of each frequency in Hz, if it reaches the bound at `snr`.
 
-        Infinite where `snr` is not positive: no such window tells a frequency. It knows nothing of
-        outliers: the highest peak of mere noise has a positive `snr` too, some 10 dB in the whole
-        window, and claims the deviation of a tone that strong.
+        Infinite where `snr` is not positive: no such window tells a frequency. It is a millionth of
+        a bin at least, which is what the search for the peak leaves, so that it is not zero in a
+        window without noise either. It knows nothing of outliers: the highest peak of mere noise
+        has a positive `snr` too, some 10 dB in the whole window, and claims the deviation of a tone
+        that strong.
         """
         snr = self.snr
         usual = (snr > 0) & np.isfinite(snr)
@@ -84,7 +89,8 @@ class DopplerRecord:
             bound = crlb_frequency_std_dc(f, some, self.window, self.fs)
         else:
             bound = crlb_frequency_std(some, self.window, self.fs)
-        return np.where(usual, bound, np.where(snr > 0, 0.0, np.inf))
+        finest = _FINEST * self.fs / self.window
+        return np.where(snr > 0, np.maximum(np.where(usual, bound, 0.0), finest), np.inf)
 
     def measurements(self) -> tuple[FloatArray, FloatArray]:
         """Return frequencies and their deviations as `ekf` and `ml_start` take them.
@@ -92,21 +98,22 @@ class DopplerRecord:
         Returns
         -------
         z : ndarray, shape (..., K, S)
-            `frequency` in Hz; NaN, which means missing, where `frequency_std` is infinite.
+            `frequency` in Hz; NaN, which means missing, where `frequency_std` is not less than
+            `fs`: so wide is what a frequency may be in without any sample.
         sigma_f : ndarray, shape (..., K, S)
             `frequency_std` in Hz. Where `z` is NaN it is `fs`: a filter wants a number there, and
-            does not use it. It is 0 in a window without noise, which a filter refuses.
+            does not use it.
         """
         std = self.frequency_std
-        missing = np.isinf(std)
-        return np.where(missing, np.nan, self.frequency), np.where(missing, self.fs, std)
+        known = std < self.fs
+        return np.where(known, self.frequency, np.nan), np.where(known, std, self.fs)
 
     def _size(self):
         """Return what a tone of amplitude 1 leaves of the n samples' energy beside a constant."""
         n = self.window
         if not self.beside_constant:
             return n
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(all="ignore"):
             return n - sum_of_ones(self.frequency * n / self.fs, n)[0] ** 2 / n
 
 
@@ -119,6 +126,7 @@ def sliding_doppler(
     *,
     band: Sequence[float] | None = None,
     tag: Literal["center", "end", "start"] = "center",
+    valid: ArrayLike | None = None,
 ) -> DopplerRecord:
     """Return the Doppler shifts in windows that slide over IQ samples.
 
@@ -143,6 +151,10 @@ def sliding_doppler(
         Which moment of the window its time is. The frequency of a window is that at its center:
         with another tag, it is late or early by half the window.
 
+    valid : array_like of bool, broadcast to (..., S, n), optional
+        Which samples are measurements, see `valid_samples`; all if None. A window that touches
+        another one is missing.
+
     Returns
     -------
     DopplerRecord
@@ -150,9 +162,9 @@ def sliding_doppler(
     Raises
     ------
     ValueError
-        If a value is not finite, `window` does not fit into the record or is less than 3 (4 with
-        `ml_frequency_dc`), a number is not positive, `tag` is none of the three, or the estimator
-        refuses its arguments.
+        If a valid sample is not finite or beyond 1e140, `window` does not fit into the record or is
+        less than 3 (4 with `ml_frequency_dc`), a number is not positive, `tag` is none of the
+        three, or the estimator refuses its arguments.
 
     Notes
     -----
@@ -167,7 +179,10 @@ def sliding_doppler(
     >>> (1e3 * doppler.time).round(2).tolist(), doppler.frequency.round(0)[0].tolist()
     ([12.45, 37.45, 62.45, 87.45], [100.0, 150.0])
     """
-    x = _checks.finite_complex("x", x, (None, None))
+    x, valid = known_samples("x", x, valid, (None, None))
+    largest = max(np.abs(part).max(initial=0.0) for part in (x.real, x.imag))
+    if largest > _LARGEST:
+        raise ValueError(f"x must not exceed {_LARGEST:g}, or its square is lost, got {largest:g}")
     fs = _checks.positive_number("fs", fs)
     constant = estimator is ml_frequency_dc
     window = _checks.whole_number("window", window, least=4 if constant else 3)
@@ -179,7 +194,12 @@ def sliding_doppler(
     firsts = np.arange(0, n - window + 1, hop)
     records = x.reshape(-1, n)
     estimate = _by_peaks if estimator is ml_frequency else _by_call
-    values = estimate(records, fs, window, firsts, estimator, band)
+    with np.errstate(under="ignore"):
+        f, amp2, noise = estimate(records, fs, window, firsts, estimator, band)
+    if valid is not None:
+        gone = _touched(~valid.reshape(-1, n), window, firsts)
+        f[gone], amp2[gone], noise[gone] = np.nan, 0.0, np.nan
+    values = f, amp2, noise
     shape = (*x.shape[:-1], len(firsts))
     f, amp2, noise = (np.swapaxes(v.reshape(shape), -1, -2) for v in values)
     time = (firsts + part * (window - 1)) / fs
@@ -204,16 +224,14 @@ def _by_call(records, fs, n, firsts, estimator, band):
     t = np.arange(n)
     constant = estimator is ml_frequency_dc
     energy = _energies(records, n, firsts).ravel()
+    still = unmoving(records, rows, starts, n)
     step = max(1, _AT_ONCE // n)
     for a in range(0, len(rows), step):
         part = slice(a, a + step)
         x = windows[rows[part], starts[part]]
         with np.errstate(divide="ignore", invalid="ignore"):  # windows of zeros
             found = estimator(x, fs, band)
-        none = ~np.isfinite(found)
-        blank = np.flatnonzero(energy[part] == 0)  # by rounding, or because all are zero
-        none[blank] |= (x[blank] == 0).all(axis=-1)
-        found = np.where(none, np.nan, found)
+        found = np.where(np.isfinite(found) & ~still[part], found, np.nan)
         if constant:
             x = about_mean(x)
             energy[part] = np.sum(x.real**2 + x.imag**2, axis=-1)
@@ -230,9 +248,19 @@ def _by_call(records, fs, n, firsts, estimator, band):
 
 def _energies(records, n, firsts):
     """Return the sum of |x|^2 in each window (R, K)."""
-    energy = np.zeros((len(records), records.shape[1] + 1))
-    np.cumsum(records.real**2 + records.imag**2, axis=-1, out=energy[:, 1:])
-    return energy[:, firsts + n] - energy[:, firsts]
+    # Each sum by itself: a difference of running sums would keep the rounding of a loud moment.
+    windows = np.lib.stride_tricks.sliding_window_view(
+        records.real**2 + records.imag**2, n, axis=-1
+    )
+    hop = firsts[1] - firsts[0] if len(firsts) > 1 else 1
+    return windows[:, : firsts[-1] + 1 : hop].sum(axis=-1)
+
+
+def _touched(bad, n, firsts):
+    """Return which windows hold a sample that is bad (R, K)."""
+    count = np.zeros((len(bad), bad.shape[1] + 1), dtype=int)
+    np.cumsum(bad, axis=-1, out=count[:, 1:])
+    return count[:, firsts + n] > count[:, firsts]
 
 
 def _places(records, firsts):

@@ -108,6 +108,24 @@ def valid_samples(
     return valid.reshape(shape)
 
 
+def known_samples(name, x, valid, shape):
+    """Return checked samples with zeros where they are not valid, and the mask they came with.
+
+    The mask is None if all are to be taken for measurements, else of the shape of the samples.
+    """
+    if valid is None:
+        return _checks.finite_complex(name, x, shape), None
+    x = _checks.numbers(name, x, shape)
+    valid = _checks.booleans("valid", valid)
+    try:
+        valid = np.broadcast_to(valid, x.shape)
+    except ValueError:
+        raise ValueError(
+            f"valid must have a shape that broadcasts to {x.shape} of {name}, got {valid.shape}"
+        ) from None
+    return _checks.finite_complex(name, np.where(valid, x, 0.0)), valid
+
+
 def _alive(rows, full_scale, longest_run, false_alarm):
     """Return the same for each branch of the modules, shape of `rows` (runs, S, branches, n).
 

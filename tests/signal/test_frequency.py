@@ -170,7 +170,7 @@ def test_a_band_without_the_tone_gives_the_highest_of_what_is_in_it():
 
 @pytest.mark.parametrize("band", [None, (50.0, 130.0)])
 @pytest.mark.parametrize("estimator", BOTH)
-def test_zeros_have_no_frequency_and_beside_a_constant_no_constant_has(estimator, band):
+def test_zeros_have_no_frequency_and_no_constant_has(estimator, band):
     """0.1 - 0.7j and its like are no multiples of a power of two: their mean is rounded."""
     x = np.zeros((4, N), dtype=complex)
     x[1] = np.exp(2j * np.pi * 0.1 * np.arange(N))
@@ -178,12 +178,12 @@ def test_zeros_have_no_frequency_and_beside_a_constant_no_constant_has(estimator
     f = estimator(x, FS, band)
     assert np.isnan(f[0])
     assert f[1] == pytest.approx(100)
-    assert np.isnan(f[2:]).all() == (estimator is ml_frequency_dc)
+    assert np.isnan(f[2:]).all()
 
 
 def test_a_tone_on_a_bin_leaves_zeros_at_the_others_and_that_stops_nothing():
     """Without noise, all other bins of an unpadded transform are zero to the last bit."""
-    x = np.stack([np.ones(N), np.exp(2j * np.pi * np.arange(N) / 4)])
+    x = np.stack([(-1.0) ** np.arange(N), np.exp(2j * np.pi * np.arange(N) / 4)])
     for band in [(50, 130), (300, 400), (5, 6)]:
         f = ml_frequency(x, FS, band)
         assert ((f >= band[0]) & (f <= band[1])).all()
@@ -228,7 +228,7 @@ def test_what_is_no_signal_is_refused_by_name(estimator):
         (x[:1], "x must have at least . samples, got 1"),
         (np.array([1, np.nan, 1]), r"x must be finite, got nan at index \(1,\)"),
         (np.array([1, np.inf + 1j, 1]), "x must be finite"),
-        ("IQ", "x must be an array of real numbers"),
+        ("IQ", "x must be an array of numbers"),
     ]:
         with pytest.raises(ValueError, match=message):
             estimator(bad, FS)

@@ -205,7 +205,7 @@ def test_a_longer_lag_sharpens_the_pulse_pair_and_narrows_what_is_unambiguous():
 
 
 @pytest.mark.parametrize("lag", [1, 2, 7, 50])
-@pytest.mark.parametrize("middle", [-300.0, 0.0, 118.0, 999.0])
+@pytest.mark.parametrize("middle", [-301.0, 0.0, 118.0, 999.0])
 def test_the_pulse_pair_finds_the_tone_that_lies_around_the_middle_of_its_band(lag, middle):
     """Anywhere within fs / (2 lag) of it, without noise."""
     f = middle + np.array([-0.49, -0.1, 0.3, 0.49]) * FS / lag
