@@ -7,6 +7,8 @@ from .._typing import ArrayLike, BoolArray, ComplexArray
 from ._bins import about_mean, in_range
 from .validity import known_samples
 
+_DIFFERENT = 1e-12  # share of the powers' product: less than that is rounding
+
 
 def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     """Return IQ samples with a constant added, as leakage of the carrier adds it.
@@ -180,15 +182,9 @@ def correct_iq_imbalance(x: ArrayLike, valid: ArrayLike | None = None) -> Comple
     True
     """
     x, valid = known_samples("x", x, valid, (None,))
-    near = in_range(x)
-    count = x.shape[-1] if valid is None else valid.sum(axis=-1, keepdims=True)
-    ii, iq, qq = (
-        np.sum(product, axis=-1, keepdims=True) / np.maximum(count, 1)
-        for product in (near.real**2, near.real * near.imag, near.imag**2)
-    )
-    left = ii * qq - iq**2  # what of Q does not follow I
+    ii, iq, qq, left = _moments(x, valid)
     dead = (ii == 0) & (qq == 0)
-    good = (left > 1e-12 * ii * qq) | dead
+    good = (left > _DIFFERENT * ii * qq) | dead
     if not good.all():
         place = tuple(int(i) for i in np.argwhere(~good[..., 0])[0])
         where = f" at index {place}" if place else ""
@@ -198,6 +194,36 @@ def correct_iq_imbalance(x: ArrayLike, valid: ArrayLike | None = None) -> Comple
             f"{iq[place][0]:.3g}{where}"
         )
     return x.real + 1j * (ii * x.imag - iq * x.real) / np.sqrt(np.where(dead, 1.0, left))
+
+
+def branches_differ(x: ArrayLike, valid: ArrayLike | None = None) -> BoolArray:
+    """Return in which records I and Q are not proportional, so that they tell a direction.
+
+    Parameters
+    ----------
+    x : array_like of complex, shape (..., n)
+        IQ samples with mean zero.
+    valid : array_like of bool, broadcast to (..., n), optional
+        Which samples are measurements; all if None.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+        False for a module without Q, or with twice the same branch; there `correct_iq_imbalance`
+        refuses. True for one that is dead.
+
+    Raises
+    ------
+    ValueError
+        If a valid sample is not finite.
+
+    Examples
+    --------
+    >>> branches_differ([[1, -1, 1j, -1j], [1, -1, 2, -2], [0, 0, 0, 0]]).tolist()
+    [True, False, True]
+    """
+    ii, _, qq, left = _moments(*known_samples("x", x, valid, (None,)))
+    return ((left > _DIFFERENT * ii * qq) | ((ii == 0) & (qq == 0)))[..., 0]
 
 
 def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
@@ -243,6 +269,17 @@ def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
         return (np.clip(place, -levels // 2, levels // 2 - 1) + 0.5) * step
 
     return steps(x.real) + 1j * steps(x.imag)
+
+
+def _moments(x, valid):
+    """Return mean squares and product of I and Q, and what of Q does not follow I (..., 1)."""
+    x = in_range(x)
+    count = x.shape[-1] if valid is None else valid.sum(axis=-1, keepdims=True)
+    ii, iq, qq = (
+        np.sum(product, axis=-1, keepdims=True) / np.maximum(count, 1)
+        for product in (x.real**2, x.real * x.imag, x.imag**2)
+    )
+    return ii, iq, qq, ii * qq - iq**2
 
 
 def _imbalance(gain_db, phase_deg):

@@ -11,11 +11,10 @@ from .._typing import ArrayLike, FloatArray
 from ._bins import about_mean, sum_of_ones, unmoving
 from .frequency import ml_frequency, ml_frequency_dc, peaks
 from .laws import crlb_frequency_std, crlb_frequency_std_dc
-from .validity import known_samples
+from .validity import LARGEST, known_samples
 
 _TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}
 _AT_ONCE = 2**14  # samples in the windows of one call of an estimator: a quarter of a megabyte
-_LARGEST = 1e140  # amplitude; beyond, the energy of a window may not be finite
 _FINEST = 1e-6  # bins: so much the search for the peak leaves, see `_ml_kernel`
 
 
@@ -181,8 +180,8 @@ def sliding_doppler(
     """
     x, valid = known_samples("x", x, valid, (None, None))
     largest = max(np.abs(part).max(initial=0.0) for part in (x.real, x.imag))
-    if largest > _LARGEST:
-        raise ValueError(f"x must not exceed {_LARGEST:g}, or its square is lost, got {largest:g}")
+    if largest > LARGEST:
+        raise ValueError(f"x must not exceed {LARGEST:g}, or its square is lost, got {largest:g}")
     fs = _checks.positive_number("fs", fs)
     constant = estimator is ml_frequency_dc
     window = _checks.whole_number("window", window, least=4 if constant else 3)

@@ -5,8 +5,9 @@ import numpy as np
 from .. import _checks
 from .._typing import ArrayLike, BoolArray
 
-# A block of so many samples stands still if it moves less than this share of the module's noise.
-_STILL = ((32, 0.01), (128, 0.1))
+_BLOCK = 32  # samples that show a branch's noise
+# So many samples stand still if they move less than this share of the module's noise.
+_STILL = ((16, 0.005), (32, 0.03), (128, 0.1))
 _BESIDE = 1e-3  # share for the noise of the other modules, whose gain may differ
 _ALIVE = 0.75  # quantile of a module's blocks that is taken for its noise
 _COARSE = 0.6  # steps: noise of less than that repeats as long as the signal lets it
@@ -15,7 +16,9 @@ _CHANGES = (
     32  # short runs that are taken for granted, or a record that never moves would be natural
 )
 _LONGEST = 10  # how many runs dead stretches cannot be: where many are long, that is natural
+_LOUD = 1e4  # of the noise, and of the median in the block: what is louder is no echo
 _ODDS = 0.8  # of the two highest codes, the share of the highest: for a pure tone it is 0.71
+LARGEST = 1e140  # amplitude, whose square is finite, and that of a sum of many
 _AT_ONCE = 2**20  # samples
 
 
@@ -50,7 +53,8 @@ def valid_samples(
     ndarray of bool, shape of x
         False where there is no measurement:
 
-        - a value is not finite;
+        - a value is not finite, or its square is not;
+        - I or Q of single samples is a hundred times as far off as the noise and their neighbors;
         - I or Q stays the same for longer than quantized noise does;
         - I or Q hardly moves: echo included, less than a hundredth of the power of the module's own
           noise in 32 samples or a tenth in 128, or a thousandth of that of the other modules;
@@ -131,7 +135,7 @@ def _alive(rows, full_scale, longest_run, false_alarm):
 
     The values in `rows` are lost: of a long recording there should not be many copies.
     """
-    good = np.isfinite(rows)
+    good = np.abs(rows) <= LARGEST  # not so if NaN
     rows[~good] = 0.0
     # Powers of two change no relation, and keep squares away from overflow.
     exponent = -int(np.frexp(max(rows.max(), -rows.min()))[1])
@@ -149,6 +153,9 @@ def _alive(rows, full_scale, longest_run, false_alarm):
     step = moves.min(axis=-1, initial=np.inf, where=~same)
     del moves
     own = _own_noise(rows, good)
+    reach = np.ptp(rows, axis=-1) ** 2
+    for place in zip(*np.nonzero((reach > _LOUD * own) & (own > 0)), strict=True):
+        good[place] &= ~_loud(rows[place], own[place])
     for place in zip(*np.nonzero(same.sum(axis=-1) > 1), strict=True):
         change = np.flatnonzero(~same[place]) + 1
         length = np.diff(change, prepend=0, append=rows.shape[-1])
@@ -192,6 +199,18 @@ def _clipped(rows, good, chance):
         at |= here & many[..., None]
         del heights, here  # before the others take as much again
     return at
+
+
+def _loud(row, noise):
+    """Return which samples are further off than any echo beside such neighbors."""
+    block = _BLOCK
+    first = _firsts(len(row), block, block)
+    x = row[first[:, None] + np.arange(block)]
+    square = (x - np.median(x, axis=-1, keepdims=True)) ** 2
+    usual = np.maximum(np.median(square, axis=-1, keepdims=True), noise)
+    loud = np.zeros(len(row), dtype=bool)
+    loud[(first[:, None] + np.arange(block))[square > _LOUD * usual]] = True
+    return loud
 
 
 def _longest_natural(length, sigma, chance):
@@ -243,7 +262,7 @@ def _variance(rows, good, first, block):
 
 def _own_noise(rows, good):
     """Return the variance of the noise of each branch, (...); 0 if nothing shows it."""
-    block = _STILL[0][0]
+    block = _BLOCK
     first = _firsts(rows.shape[-1], block, block)
     if not len(first):
         return np.zeros(rows.shape[:-1])

@@ -92,7 +92,7 @@ def test_noise_alone_is_kept_as_often_as_promised():
         assert lost.sum() < 80, sigma
 
 
-@pytest.mark.parametrize("gain", [1e-3, 1.0, 1e3, 1e200, 1e-200])
+@pytest.mark.parametrize("gain", [1e-3, 1.0, 1e3, 1e130, 1e-200])
 def test_the_scale_does_not_matter(gain):
     x = six()
     x[2, 1000:2000] = 0.1
@@ -114,10 +114,15 @@ def test_a_slow_target_whose_shift_passes_zero_is_kept():
         assert valid_samples(x).all()
 
 
-def test_one_loud_sample_costs_no_other():
+@pytest.mark.parametrize("loud", [300.0, 1e4, 1e8, 1e139, 1e141, 1e308])
+def test_loud_samples_cost_themselves(loud):
+    """And what their neighbors are does not matter: at the ends, in pairs, or one in a branch."""
     x = six()
-    x[2, 7] = 1e8
-    assert valid_samples(x).sum() >= x.size - 1
+    places = [(0, 0), (0, -1), (2, 7), (2, 8), (3, 1000), (4, 2500)]
+    for at in places[:-1]:
+        x[at] = loud
+    x[places[-1]] -= 1j * loud
+    np.testing.assert_array_equal(np.argwhere(~valid_samples(x)), np.argwhere(x != six()))
 
 
 def test_what_lies_at_the_stop_is_clipped():

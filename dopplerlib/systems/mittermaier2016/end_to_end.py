@@ -189,8 +189,9 @@ def track_iq(
     Raises
     ------
     ValueError
-        If there are less than two windows in `start`, `inflate` or `sigma_p` is not positive,
-        `dc_until` is not within the record, or an argument is refused by `sliding_doppler`.
+        If the samples of `iq` are not sound, there are less than two windows in `start`, `inflate`
+        or `sigma_p` is not positive, `dc_until` is not within the record, or an argument is refused
+        by `sliding_doppler`.
 
     Notes
     -----
@@ -200,8 +201,10 @@ def track_iq(
     The deviations are those of the bound at the *measured* signal-to-noise ratio of each window and
     module. The box of the start is `start_box`.
 
-    A module that is dead or too weak in a window is missing there, and the others go on: its
-    measured signal-to-noise ratio in the whole window has to be 20 at least.
+    A module that is too weak in a window, or has a sample there that is no measurement, is missing,
+    and the others go on: its measured signal-to-noise ratio in the whole window has to be 20 at
+    least. What is no measurement is decided on the samples before anything else, see
+    `Baseband.samples`.
 
     The acceleration is that of one millisecond. For another hop it is scaled, so that the velocity
     wanders as far in a second.
@@ -213,10 +216,11 @@ def track_iq(
     sigma_p = _checks.positive_number("sigma_p", s.sigma_p if sigma_p is None else sigma_p)
     n = round(_checks.positive_number("window", window) * iq.fs)
     step = n if hop is None else max(1, round(_checks.positive_number("hop", hop) * iq.fs))
-    x = _without_constant(iq, dc_until) if remove_dc else iq.x
-    x = correct_iq_imbalance(x) if balance else x
+    x, valid = iq.samples()
+    x = _without_constant(x, valid, iq, dc_until) if remove_dc else x
+    x = correct_iq_imbalance(x, valid) if balance else x
     top = signal_chain()["speed_limit_m_s"] * iq.array.doppler_per_speed
-    d = sliding_doppler(x, iq.fs, n, step, estimator, band=(-top, top), tag=tag)
+    d = sliding_doppler(x, iq.fs, n, step, estimator, band=(-top, top), tag=tag, valid=valid)
     time = iq.first + d.time - (iq.delay if subtract_delay else 0.0)
     known = iq.first + _ends(d)
     seen = n * d.snr >= SEEN
@@ -246,13 +250,17 @@ def _room():
     return start_box()
 
 
-def _without_constant(iq, until):
+def _without_constant(x, valid, iq, until):
+    """Return samples less their mean, or that of as many valid ones as there are `until` then."""
     if until is None:
-        return remove_mean(iq.x)
+        return remove_mean(x, valid)
     samples = round((_checks.one_number("dc_until", until) - iq.first) * iq.fs)
-    if not 1 <= samples <= iq.x.shape[-1]:
+    if not 1 <= samples <= x.shape[-1]:
         raise ValueError(f"dc_until must be within the record, got {until}")
-    return iq.x - iq.x[..., :samples].mean(axis=-1, keepdims=True)
+    early = valid & (np.cumsum(valid, axis=-1) <= samples)
+    constant = np.where(early, x, 0.0).sum(axis=-1, keepdims=True)
+    constant /= np.maximum(early.sum(axis=-1, keepdims=True), 1)
+    return np.where(valid, x - constant, 0.0)
 
 
 def _ends(doppler):

@@ -43,7 +43,9 @@ def fit_phases(iq, x, moment, steps=3):
     known = iq.first + np.arange(iq.x.shape[-1]) / iq.fs <= moment + 1e-9
     if known.sum() < 3:
         raise ValueError(f"moment must leave room for three samples, got {moment}")
-    y = correct_iq_imbalance(remove_mean(iq.x))[..., known]
+    y, valid = iq.samples()
+    y = correct_iq_imbalance(remove_mean(y, valid), valid)[..., known]
+    weight = valid[..., known].astype(float)[..., None]
     back = iq.first - iq.delay + np.arange(y.shape[-1]) / iq.fs - moment
     per_meter = 4 * np.pi / iq.array.wavelength
     for run in range(len(x)):
@@ -53,13 +55,17 @@ def fit_phases(iq, x, moment, steps=3):
             r = np.linalg.norm(away, axis=-1)
             turned = y[run] * np.exp(1j * per_meter * r)
             # What all samples of a sensor have in common is its unknown phase.
-            left = _centered(np.angle(turned / turned.mean(axis=-1, keepdims=True))[..., None])
+            mean = turned.mean(axis=-1, keepdims=True)
+            mean = np.where(mean == 0, 1.0, mean)  # a module that measures nothing
+            left = _centered(np.angle(turned / mean)[..., None], weight[run])
             toward = away / r[..., None]
             slopes = np.concatenate([toward, back[:, None] * toward], axis=-1)
-            slopes = -per_meter * _centered(slopes).reshape(-1, 6)
+            slopes = -per_meter * _centered(slopes, weight[run]).reshape(-1, 6)
             x[run] += np.linalg.lstsq(slopes, left.ravel(), rcond=None)[0]
     return x
 
 
-def _centered(values):
-    return values - values.mean(axis=1, keepdims=True)
+def _centered(values, weight):
+    """Return values about their mean over the valid samples of each sensor, and 0 at the others."""
+    count = np.maximum(weight.sum(axis=1, keepdims=True), 1.0)
+    return weight * (values - (weight * values).sum(axis=1, keepdims=True) / count)

@@ -6,8 +6,9 @@ from ... import _checks
 from ..._records import record
 from ...model.radar_array import RadarArray
 from ...signal.front_end import lowpass, lowpass_decimate
-from ...signal.impairments import add_dc, add_iq_imbalance
+from ...signal.impairments import add_dc, add_iq_imbalance, branches_differ, remove_mean
 from ...signal.synthesis import iq_from_geometry
+from ...signal.validity import known_samples, valid_samples
 from .published import scenario
 
 # The module's faults, in amplitudes of the echo, dB and degrees. Ours: the paper states none.
@@ -34,6 +35,9 @@ class Baseband:
     noise_gain : float
         Variance of white noise after the low-pass over what its density in the passband amounts
         to at the new rate. Below 1: the skirts of the filter lose a little of it.
+    valid : ndarray of bool, shape (..., N, n), optional
+        Which samples are measurements, as decided before the low-pass: see `valid_samples` and
+        `lowpass_decimate`. If None, `x` is what the modules gave, and its samples tell it.
     """
 
     x: np.ndarray
@@ -42,6 +46,28 @@ class Baseband:
     delay: float = 0.0
     first: float = 0.0
     noise_gain: float = 1.0
+    valid: np.ndarray | None = None
+
+    def samples(self):
+        """Return the samples, with zeros where there is no measurement, and which are one.
+
+        Returns
+        -------
+        x : ndarray of complex, shape (..., N, n)
+        valid : ndarray of bool, shape (..., N, n)
+            False throughout for a module whose I and Q are proportional: they tell no direction.
+
+        Raises
+        ------
+        ValueError
+            If `x` does not consist of numbers, is not finite where `valid` is True, or has not N
+            sensors; or if `valid` does not fit.
+        """
+        shape = (len(self.array.positions), None)
+        valid = valid_samples(self.x) if self.valid is None else self.valid
+        x, valid = known_samples("iq.x", self.x, valid, shape)
+        known = valid & branches_differ(remove_mean(x, valid), valid)[..., None]
+        return np.where(known, x, 0.0), known
 
 
 def received(runs, *, rng, fs=10e3, snr_db=20.0, factor=5, faults=True, amplitude="constant"):

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ... import _checks
 from ..._data import on_disk
 from ..._files import write_text
 from ...signal.recording import Recording, read_sigmf, write_sigmf
@@ -105,5 +104,5 @@ def read_simulated_iq(folder=None):
             f"the recording must have the wavelength {array.wavelength} m, "
             f"got {recording.wavelength}"
         )
-    iq = Baseband(_checks.finite_complex("x", recording.x)[None], recording.fs, array)
+    iq = Baseband(recording.x[None], recording.fs, array, valid=recording.valid[None])
     return iq, rows[:, 0], rows[:, 1:]
