@@ -7,7 +7,7 @@ from .._typing import ArrayLike, BoolArray
 
 _BLOCK = 32  # samples that show a branch's noise
 # So many samples stand still if they move less than this share of the module's noise.
-_STILL = ((16, 0.005), (32, 0.03), (128, 0.1))
+_STILL = ((16, 0.002), (32, 0.01), (128, 0.1))
 _BESIDE = 1e-3  # share for the noise of the other modules, whose gain may differ
 _ALIVE = 0.75  # quantile of a module's blocks that is taken for its noise
 _COARSE = 0.6  # steps: noise of less than that repeats as long as the signal lets it
@@ -56,8 +56,8 @@ def valid_samples(
         - a value is not finite, or its square is not;
         - I or Q of single samples is a hundred times as far off as the noise and their neighbors;
         - I or Q stays the same for longer than quantized noise does;
-        - I or Q hardly moves: echo included, less than a hundredth of the power of the module's own
-          noise in 32 samples or a tenth in 128, or a thousandth of that of the other modules;
+        - I or Q hardly moves: echo included, less than 0.002 of the power of the module's own noise
+          in 16 samples, 0.01 in 32 or 0.1 in 128, or 0.001 of that of the other modules;
         - I or Q is clipped.
 
     Raises
@@ -77,9 +77,9 @@ def valid_samples(
 
     The noise of a module is what its neighboring frequencies or its fourth differences show,
     whichever is less, in the median of a block: neither an echo that grows nor single loud samples
-    move it. White noise falls below a hundredth of its power in 32 samples of a branch with a
-    chance of 1e-24, below a tenth in 128 with 1e-38. A module that hardly moves for three quarters
-    of its record or more is told by the others only.
+    move it. White noise of a branch falls below a hundredth of its power in 32 samples with a
+    chance of less than 1e-24; in 16 and 128 those are 1e-17 and 1e-38. A module that hardly moves
+    for three quarters of its record or more is told by the others only.
 
     Samples with an imaginary part of zero throughout are those of a module without Q: I decides.
 
