@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from .._typing import ArrayLike
+from .._typing import ArrayLike, BoolArray
 from ..model.information import SINGULAR, inverse_information
 from ..model.radar_array import RadarArray
 from .extended_kalman import _measurements
@@ -17,9 +17,17 @@ from .extended_kalman import _measurements
 # grid is most of the work; if something does it is a small part, and a fine one misses less.
 _POINTS = {"static": {0: 1, 1: 64, 2: 16, 3: 11}, "moving": {0: 1, 1: 64, 2: 24, 3: 16}}
 
+# Chi-square of a start over its degrees of freedom: 1 if all is right, 100 if the deviations are a
+# tenth of what they should be. What is beyond has another reason.
+IMPLAUSIBLE = 100.0
+
 # The grid and its slopes see the first samples only, in which a target at the largest speed moves
 # this far, relative to the size of the array: so far a straight line explains its Doppler shifts.
 _WINDOW = 0.25
+
+
+class ImplausibleStart(UserWarning):
+    """A start does not explain the measurements that it comes from, see `Start.plausible`."""
 
 
 @record
@@ -48,6 +56,8 @@ class Start:
         The best optimum found elsewhere; NaN if none was found.
     second_cost : ndarray, shape (...)
         Its chi-square. A difference of a few from `cost` says that the choice is uncertain.
+    degrees : ndarray of int, shape (...)
+        Degrees of freedom of the chi-square: measurements that are there less unknowns.
     """
 
     x: np.ndarray
@@ -58,6 +68,18 @@ class Start:
     converged: np.ndarray
     second_x: np.ndarray
     second_cost: np.ndarray
+    degrees: np.ndarray
+
+    @property
+    def plausible(self) -> BoolArray:
+        """Whether chi-square is at most a hundred times its degrees of freedom, shape (...).
+
+        If not, no straight flight in the box explains the measurements. Usual reasons: I and Q are
+        exchanged, so that all Doppler shifts have the wrong sign; sensors are in another order
+        than their positions; or the true state is not in the box. With the likelihood "static",
+        a target that moves is a reason, too.
+        """
+        return self.cost <= IMPLAUSIBLE * np.maximum(self.degrees, 1)
 
 
 @_checks.quiet
@@ -196,7 +218,8 @@ def ml_start(
     identifiable = np.zeros(runs, bool)
     _checks.estimates("z, array, sigma_f, T, box", information[solved])
     P[solved], identifiable[solved] = inverse_information(information[solved], free)
-    fields = x, P, cost, at_bound, identifiable, converged, second_x, second_cost
+    degrees = np.sum(~np.isnan(z), axis=(1, 2)) - needed
+    fields = x, P, cost, at_bound, identifiable, converged, second_x, second_cost, degrees
     return Start(*(field.reshape((*batch, *field.shape[1:])) for field in fields))
 
 
