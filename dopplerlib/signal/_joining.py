@@ -1,9 +1,10 @@
 """Recordings of one sensor or more each, made one over the time that they have in common."""
 
-from collections.abc import Callable, Iterator
+import pathlib
+from collections.abc import Callable, Iterable, Iterator
 from datetime import datetime
 from os import PathLike
-from pathlib import Path
+from os.path import isfile
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from ._layout import LAYOUTS, analytic, samples, turning
 from ._recording import Recording, later
 from .validity import valid_samples
 
+Path = str | PathLike[str]
 _LIKELY = 0.6  # share of strong windows whose lines turn: 1 for I and Q, 0 to 0.5 for real channels
 
 
@@ -30,7 +32,7 @@ class Source(NamedTuple):
     lost: Callable[[int, int], np.ndarray] | None = None  # (first, count): bool (sensors, count)
 
 
-def align(recordings):
+def align(recordings: Iterable[Recording]) -> Recording:
     """Join recordings that have the same clock, over the time that they have in common.
 
     Parameters
@@ -58,6 +60,7 @@ def align(recordings):
     Examples
     --------
     >>> from datetime import UTC, datetime, timedelta
+    >>> from dopplerlib.signal.recording import Recording, align
     >>> noon = datetime(2016, 9, 28, 12, tzinfo=UTC)
     >>> one = Recording([[0, 1, 2, 3]], 1000.0, 24e9, noon)
     >>> two = Recording([[4, 5, 6]], 1000.0, 24e9, noon + timedelta(milliseconds=2))
@@ -65,20 +68,17 @@ def align(recordings):
     array([[2., 3.],
            [4., 5.]])
     """
-    try:
-        recordings = list(recordings)
-    except TypeError:
-        recordings = [recordings]
-    if not recordings or not all(isinstance(one, Recording) for one in recordings):
+    given = list(recordings) if isinstance(recordings, Iterable) else []
+    if not given or not all(isinstance(one, Recording) for one in given):
         raise ValueError(f"recordings must be a sequence of recordings, got {recordings!r:.80}")
     sources = [
         Source(f"recordings[{i}]", r.fs, r.carrier, r.start, r.x.shape[1], 2 * len(r.x), None, None)
-        for i, r in enumerate(recordings)
+        for i, r in enumerate(given)
     ]
     firsts, count, start = overlap(sources)
     parts = [slice(first, first + count) for first in firsts]
-    x = np.concatenate([r.x[:, part] for r, part in zip(recordings, parts, strict=True)])
-    valid = np.concatenate([r.valid[:, part] for r, part in zip(recordings, parts, strict=True)])
+    x = np.concatenate([r.x[:, part] for r, part in zip(given, parts, strict=True)])
+    valid = np.concatenate([r.valid[:, part] for r, part in zip(given, parts, strict=True)])
     return Recording(x, sources[0].fs, sources[0].carrier, start, valid)
 
 
@@ -88,16 +88,17 @@ def existing(paths, found=lambda path: path):
     `found` returns the file that a path means, which may have another name.
     """
     given = paths
-    if isinstance(paths, (str, PathLike)) or not hasattr(paths, "__iter__"):
+    try:
+        paths = [paths] if isinstance(paths, (str, PathLike)) else list(paths)
+    except TypeError:
         paths = [paths]
-    paths = list(paths)
     if not all(isinstance(path, (str, PathLike)) for path in paths):
         raise ValueError(f"paths must be a path or a sequence of paths, got {given!r}")
     if not paths:
         raise ValueError("paths must name at least one file, got none")
-    files = [found(Path(path)) for path in paths]
+    files = [found(pathlib.Path(path)) for path in paths]
     for i, (path, file) in enumerate(zip(paths, files, strict=True)):
-        if not file.is_file():
+        if not isfile(file):  # Path.is_file raises if a name is too long
             raise ValueError(f"paths must be files that exist, got {str(path)!r}")
         if any(file.samefile(other) for other in files[:i]):
             raise ValueError(f"paths must be different files, got {str(path)!r} twice")
@@ -173,6 +174,9 @@ def join(sources, layout, first, count):
         for source, own, a in zip(sources, rows, firsts, strict=True):
             _fill(x[own[0] : own[-1] + 1], source, a, kind)
         valid = valid_samples(x)
+        without_q = np.zeros(len(x), dtype=bool) if kind == "real" else ~x.imag.any(axis=1)
+        if not without_q.all():
+            valid[without_q] = False  # beside others that have one, this Q is dead
         for source, own, a in zip(sources, rows, firsts, strict=True):
             if source.lost is not None:
                 valid[own] &= ~source.lost(a, count)

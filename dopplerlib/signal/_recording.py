@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
+from .._typing import FloatArray
 from .validity import valid_samples
 
 
@@ -41,6 +42,7 @@ class Recording:
 
     Examples
     --------
+    >>> from dopplerlib.signal.recording import Recording
     >>> one = Recording([[1 + 1j, float("nan"), 2 - 1j]], fs=1000.0, carrier=24e9)
     >>> one.valid
     array([[ True, False,  True]])
@@ -62,12 +64,9 @@ class Recording:
         if self.valid is None:
             valid = valid_samples(x)
         else:
-            valid = np.asarray(self.valid)
-            if valid.dtype != bool or valid.shape != x.shape:
-                raise ValueError(
-                    f"valid must be an array of booleans of shape {x.shape}, got {valid.dtype} of "
-                    f"shape {valid.shape}"
-                )
+            valid = _checks.booleans("valid", self.valid)
+            if valid.shape != x.shape:
+                raise ValueError(f"valid must have shape {x.shape} of x, got {valid.shape}")
             wrong = np.argwhere(valid & ~finite)
             if len(wrong):
                 place = tuple(map(int, wrong[0]))
@@ -77,19 +76,19 @@ class Recording:
         utc("start", self.start)
         for name, value in (
             ("x", x.astype(complex, copy=False)),
-            ("fs", _checks.positive_number("fs", self.fs)),
-            ("carrier", _checks.positive_number("carrier", self.carrier)),
+            ("fs", _checks.one_number("fs", self.fs, _checks.deviation)),
+            ("carrier", _checks.one_number("carrier", self.carrier, _checks.deviation)),
             ("valid", valid),
         ):
             object.__setattr__(self, name, value)
 
     @property
-    def time(self):
+    def time(self) -> FloatArray:
         """Time of each sample in s, counted from the first one, shape (n,)."""
         return np.arange(self.x.shape[-1]) / self.fs
 
     @property
-    def wavelength(self):
+    def wavelength(self) -> float:
         """Wavelength in vacuum in m."""
         from scipy.constants import speed_of_light
 

@@ -1,16 +1,19 @@
 """Recordings as SigMF: samples in one file, what they are in another, or both in an archive."""
 
 import hashlib
+import pathlib
 import re
 import tarfile
 import zipfile
+from collections.abc import Iterable
+from os.path import isfile
 
 import numpy as np
 
 from .. import _checks
 from .._files import file_to_write, replacing
 from .._lazy import require
-from ._joining import Source, existing, join
+from ._joining import Path, Source, existing, join
 from ._recording import Recording, first_line, numbers_to_store, utc
 from ._sigmf_metadata import INVALID, invalid_runs, parsed, segments, which_invalid
 
@@ -26,7 +29,9 @@ _LARGEST = 1e12  # Hz: SigMF allows no sampling rate or frequency beyond
 _BLOCK = 2**20  # values that are read at a time
 
 
-def write_sigmf(path, recording, samples="complex128", description=""):
+def write_sigmf(
+    path: Path, recording: Recording, samples: str = "complex128", description: str = ""
+) -> pathlib.Path:
     """Write a recording as SigMF: one pair of files, with a channel for each sensor.
 
     Parameters
@@ -85,7 +90,7 @@ def write_sigmf(path, recording, samples="complex128", description=""):
     if not recording.valid.all():
         info[keys.EXTENSIONS_KEY] = [{"name": "dopplerlib", "version": "1.0.0", "optional": True}]
         info[INVALID] = invalid_runs(recording.valid)
-    capture = {keys.FREQUENCY_KEY: float(recording.carrier)}
+    capture: dict[str, float | str] = {keys.FREQUENCY_KEY: float(recording.carrier)}
     start = utc("recording.start", recording.start)
     if start is not None:
         stamp = start.replace(tzinfo=None).isoformat(timespec="microseconds")
@@ -101,7 +106,14 @@ def write_sigmf(path, recording, samples="complex128", description=""):
     return meta
 
 
-def read_sigmf(paths, carrier=None, *, layout=None, first=0, count=None):
+def read_sigmf(
+    paths: Path | Iterable[Path],
+    carrier: float | None = None,
+    *,
+    layout: str | None = None,
+    first: int = 0,
+    count: int | None = None,
+) -> Recording:
     """Read a recording in SigMF.
 
     Parameters
@@ -155,11 +167,11 @@ def read_sigmf(paths, carrier=None, *, layout=None, first=0, count=None):
 
 def _found(path):
     """Return the file of metadata or the archive that a path means."""
-    if path.name.endswith(_ARCHIVES):
+    if not path.name or path.name.endswith(_ARCHIVES):
         return path
     base = path.name.removesuffix(_META).removesuffix(_DATA)
     pair, *archives = (path.with_name(base + end) for end in (_META, *_ARCHIVES))
-    return next((one for one in (pair, *archives) if one.is_file()), pair)
+    return next((one for one in (pair, *archives) if isfile(one)), pair)
 
 
 def _source(path, carrier, whole):

@@ -1,13 +1,16 @@
 """Recordings as WAV or FLAC: the channels are I and Q of each sensor in turn."""
 
+import pathlib
+from collections.abc import Iterable
 from contextlib import contextmanager
+from datetime import datetime
 
 import numpy as np
 
 from .. import _checks
 from .._files import file_to_write, replacing
 from .._lazy import require
-from ._joining import Source, existing, join
+from ._joining import Path, Source, existing, join
 from ._recording import Recording, first_line, numbers_to_store, utc
 from ._wav_header import Plain, header
 
@@ -17,7 +20,7 @@ _BLOCK = 2**20  # values that are read at a time
 _SUBTYPES = ("PCM_S8", "PCM_U8", "PCM_16", "PCM_24", "PCM_32", "FLOAT", "DOUBLE")
 
 
-def write_wav(path, recording, samples="float64"):
+def write_wav(path: Path, recording: Recording, samples: str = "float64") -> pathlib.Path:
     """Write a recording as WAV: the channels are I and Q of each sensor in turn.
 
     Parameters
@@ -72,7 +75,15 @@ def write_wav(path, recording, samples="float64"):
     return path
 
 
-def read_wav(paths, carrier, start=None, *, layout=None, first=0, count=None):
+def read_wav(
+    paths: Path | Iterable[Path],
+    carrier: float,
+    start: datetime | Iterable[datetime] | None = None,
+    *,
+    layout: str | None = None,
+    first: int = 0,
+    count: int | None = None,
+) -> Recording:
     """Read a recording from WAV or FLAC files.
 
     Parameters
