@@ -10,6 +10,7 @@ import pytest
 
 from dopplerlib import (
     RadarArray,
+    constant_velocity,
     doppler_shift,
     ekf,
     ekf_update,
@@ -123,6 +124,26 @@ def test_a_chain_of_all_functions_stays_a_covariance(ratio):
         x, P = (v[0] for v in rts_smooth([x, step.x], [P, step.P], F, Q))
         for one in (P, S, step.P):
             assert_covariance(one)
+
+
+def test_covariances_of_the_doppler_filter_may_go_in_at_any_ratio():
+    """The ratio is that of a variance in m^2 to one in Hz^2, with 160 Hz for a meter per second."""
+    array, T = RadarArray.ring(6, 0.2), 0.001
+    path = [0.8, 0.1, 0.1, -0.7, 0, 0] + np.arange(1, 41)[:, None] * T * np.r_[-0.7, np.zeros(5)]
+    F, Q = constant_velocity(T, 0.4)
+    H, R = np.eye(1, 6), np.eye(1)
+    z = doppler_shift(path, array)
+    for ratio in RATIOS:
+        track = ekf(
+            doppler_shift(path, array), array, path[0], 1e-4 * ratio * np.eye(6), T, 0.4, 0.01
+        )
+        for k in (0, 5, 39):
+            assert_covariance(track.P[k])
+            for P in everything_takes(track.x[k], track.P[k], F, Q, H, R):
+                assert_covariance(P)
+        assert_covariance(rts_smooth(track.x, track.P, F, Q)[1])
+        again = ekf(z, array, track.x[5], track.P[5], T, 0.4, 0.01)
+        assert_covariance(again.P)
 
 
 # ------------------------------------------------------------------------------ a plane

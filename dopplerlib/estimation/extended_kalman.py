@@ -197,7 +197,8 @@ def gate_bounds(
     Raises
     ------
     ValueError
-        If `gate` is unknown, `sensors` is not a whole number or `confidence` not between 0 and 1.
+        If `gate` is unknown, `sensors` is not a whole number of at most a million, or `confidence`
+        not between 0 and 1.
 
     Notes
     -----
@@ -211,6 +212,8 @@ def gate_bounds(
     """
     _checks.one_of("gate", gate, (None, "upper", "two-sided"))
     sensors = _checks.whole_number("sensors", sensors, least=0)
+    if sensors > 10**6:  # 8 MB
+        raise ValueError(f"sensors must be at most a million, got {sensors}")
     confidence = _checks.probability("confidence", confidence)
     lower = np.full(sensors + 1, -np.inf)
     upper = np.full(sensors + 1, np.inf)

@@ -60,7 +60,7 @@ def best_velocity(
     if z.ndim != 1:
         raise ValueError(f"z must be one sample, got an array of shape {z.shape}")
     sigma_f = _checks.each_run("sigma_f", _checks.deviation("sigma_f", sigma_f), (len(array),), ())
-    p = _checks.finite("p", p, (3,))
+    p = _checks.moderate("p", p, (3,))
     A = doppler_jacobian(np.concatenate([p, 0 * p], axis=-1), array)[..., 3:] / sigma_f[:, None]
     A[..., 2] *= not _checks.one_boolean("in_plane", in_plane)
     y = z / sigma_f
