@@ -89,7 +89,7 @@ record: $(VENV)/.ready  ## execute the chapters again and write the page on repr
 
 .PHONY: kernels
 kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
-	$(PY) -m dopplerlib.derive
+	$(PY) -m tools.kernels
 
 .PHONY: figure4
 figure4: $(VENV)/.ready  ## run the study of Fig 4 in full: some twenty seconds

@@ -2,11 +2,11 @@
 
 import re
 import sys
+from contextlib import redirect_stdout
 from pathlib import Path
-from subprocess import PIPE
 
 from tools.alone import alone
-from tools.command import child, parser, start
+from tools.command import end_at_once, parser, start
 
 BOOK = Path(__file__).resolve().parent.parent / "book"
 # Warnings are errors, and a reference to nowhere is a warning.
@@ -14,21 +14,36 @@ BUILD = ["build", "--all", "-W", "-n", "--keep-going", str(BOOK)]
 STEP = re.compile(r"(\w[\w ]*)\.\.\. *\[ *(\d+)%\]")
 
 
+class Progress:
+    """Stands in for the standard output of the builder, whose every line is a step."""
+
+    def __init__(self):
+        self.shown = None
+
+    def write(self, text):
+        """Show the step on standard error, if it is another one."""
+        step = STEP.search(text)
+        if step and step.groups() != self.shown:
+            self.shown = step.groups()
+            sys.stderr.write("\rbook: {:24} {:>3} % ".format(*self.shown))
+            sys.stderr.flush()
+
+    def flush(self):
+        """Do nothing: what is shown is shown at once."""
+
+
 def main(argv=None):
     """Build it; return the exit code of the builder, whose warnings go to standard error."""
     parser(__doc__).parse_args(argv)
-    command = [sys.executable, "-c", "from jupyter_book.cli.main import main; main()", *BUILD]
-    shown = None
-    with (
-        alone(BOOK / "_build" / ".lock", "the book") as lock,
-        child(command, pass_fds=[lock], stdout=PIPE, text=True, errors="replace") as builder,
-    ):
-        for line in builder.stdout:
-            step = STEP.search(line)
-            if step and step.groups() != shown:
-                shown = step.groups()
-                print(f"\rbook: {shown[0]} {shown[1]:>3} % ", end="", file=sys.stderr, flush=True)
-        code = builder.wait()
+    from jupyter_book.cli.main import main as build  # here: it warns of what it imports
+
+    end_at_once()  # the builder would take an interruption for a failure of its own
+    with alone(BOOK / "_build" / ".lock", "the book"):
+        try:
+            with redirect_stdout(Progress()):
+                build(BUILD)
+        except SystemExit as end:
+            code = end.code
     print(file=sys.stderr)
     if not code:
         print(BOOK / "_build" / "html" / "index.html")

@@ -41,29 +41,33 @@ def child(command, **options):
 
     `command` and `options` are those of `subprocess.Popen`; the program ends with the block.
     """
-    process = subprocess.Popen(command, start_new_session=True, **options)
+    ignore = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited
+    try:
+        process = subprocess.Popen(command, **options)
+    finally:
+        signal.signal(signal.SIGINT, ignore)
     _children.append(process)
     try:
         yield process
     finally:
-        _kill(process, signal.SIGTERM)
+        process.terminate()
         with suppress(subprocess.TimeoutExpired):
             process.wait(GRACE / 4)
-        _kill(process, signal.SIGKILL)
+        process.kill()
         process.wait()
         _children.remove(process)
+
+
+def end_at_once():
+    """Let an interruption end the process where it is: for work that would not let it pass."""
+    signal.signal(signal.SIGINT, _end)
+    signal.signal(signal.SIGTERM, _end)
 
 
 def quiet_worker():
     """Prepare a process of a pool: only the parent takes notice of an interruption."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-
-def _kill(process, number):
-    """Send a signal to a child and to its children, if the child has not been waited for."""
-    if process.returncode is None:
-        os.killpg(process.pid, number)
 
 
 def _interrupt(*_):
@@ -75,6 +79,6 @@ def _interrupt(*_):
 
 def _end(*_):
     for process in _children:
-        _kill(process, signal.SIGKILL)
+        process.kill()
     print("\ninterrupted; what was written is whole", file=sys.stderr, flush=True)
     os._exit(130)

@@ -5,10 +5,12 @@ with fixed settings and alone on one thread, and whatever else a run leaves behi
 the name of the machine's kernel) is removed.
 """
 
+import asyncio
 import json
 import os
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import nbformat
@@ -83,7 +85,10 @@ def execute(path, timeout):
             extra_arguments=["--log-level=ERROR"],
             resources={"metadata": {"path": str(path.parent)}},
         )
-        client.execute(env=env)
+        # In a thread of its own: in the main one the client would take over the signals.
+        thread = ThreadPoolExecutor(1)
+        thread.submit(asyncio.run, client.async_execute(env=env)).result()
+        thread.shutdown()
     nb.metadata = nbformat.from_dict(METADATA)
     for number, cell in enumerate(nb.cells):
         for key in TRANSIENT:
