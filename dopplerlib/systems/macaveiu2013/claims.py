@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ... import _checks
 from ...evaluation.intervals import mean_interval, quantile_interval, share_interval
 from ...evaluation.verdicts import Readings
 from ...model.polar_radar import polar_radar_jacobian
@@ -24,7 +25,13 @@ def evidence(*, rng):
     -------
     dict
         As `judge_all` takes it.
+
+    Raises
+    ------
+    ValueError
+        If `rng` is not a generator.
     """
+    _checks.generator("rng", rng)
     signals, positions, filters, others = rng.spawn(4)
     return (
         _waveforms(signals) | _positions(positions) | _filter(filters) | _scheme() | _others(others)

@@ -87,6 +87,8 @@ def scores(runs, *, rng, s=None):
     ValueError
         If `runs` is not a positive whole number, or `rng` is not a generator.
     """
+    runs = _checks.whole_number("runs", runs)
+    _checks.generator("rng", rng)
     s = settings() if s is None else s
     return _scores(_unit_noise(runs, rng, s), s)
 

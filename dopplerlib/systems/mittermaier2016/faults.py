@@ -7,6 +7,7 @@ test finds was put there.
 
 import numpy as np
 
+from ... import _checks
 from ...model.doppler import doppler_jacobian, doppler_shift
 from ...model.motion import constant_velocity
 from .causes import switched_ekf
@@ -30,7 +31,14 @@ def linear_world(runs, *, rng):
         independently with `sigma_p`.
     z : ndarray, shape (runs, K, N)
         What the tangent at the paper's path makes of them, with noise, in Hz.
+
+    Raises
+    ------
+    ValueError
+        If `runs` is not a positive whole number, or `rng` is not a generator.
     """
+    runs = _checks.whole_number("runs", runs)
+    _checks.generator("rng", rng)
     s = scenario()
     F, _ = constant_velocity(s.T, s.sigma_p)
     pushes = s.sigma_p * rng.standard_normal((runs, s.samples, 3))

@@ -182,7 +182,14 @@ def consistent_runs(runs, *, rng):
     -------
     PostMortem
         Runs of a filter with which nothing is wrong.
+
+    Raises
+    ------
+    ValueError
+        If `runs` is not a positive whole number, or `rng` is not a generator.
     """
+    runs = _checks.whole_number("runs", runs)
+    _checks.generator("rng", rng)
     s, settings = scenario("x"), start_settings()
     error = 0.01 * rng.standard_normal((runs, 6))
     start = s.truth[settings.samples - 1] + error

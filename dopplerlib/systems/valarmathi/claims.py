@@ -7,6 +7,7 @@ it best.
 
 import numpy as np
 
+from ... import _checks
 from ...evaluation.intervals import Estimate, mean_interval, quantile_interval
 from ...evaluation.verdicts import Readings
 from .algorithms import run_algorithms
@@ -49,7 +50,14 @@ def evidence(*, rng, runs=100, cells=None):
     -------
     dict
         By the id of the claim; see `judge_all`.
+
+    Raises
+    ------
+    ValueError
+        If `runs` is not a positive whole number, or `rng` is not a generator.
     """
+    _checks.generator("rng", rng)
+    runs = _checks.whole_number("runs", runs)
     for_table, for_filter, *own = rng.spawn(2 + len(CASES))
     table = window_table(rng=for_table)
     simulated = {}

@@ -107,8 +107,8 @@ def window_table(
     Raises
     ------
     ValueError
-        If `accelerations` or `snrs_db` does not rise or has less than two entries, or `judge`
-        is neither of the two.
+        If `accelerations` or `snrs_db` does not rise or has less than two entries, `judge` is
+        neither of the two, `runs` is not a positive whole number, or `rng` is not a generator.
 
     Notes
     -----
@@ -116,6 +116,8 @@ def window_table(
     """
     from .filters import filter_velocity  # it imports this module
 
+    runs = _checks.whole_number("runs", runs)
+    _checks.generator("rng", rng)
     own, said = chosen(), stated()
     accelerations = rising(
         "accelerations", own.table_accelerations if accelerations is None else accelerations
