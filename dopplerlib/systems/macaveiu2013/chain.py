@@ -150,6 +150,7 @@ def after_rule(scans, rule="always"):
     list of Scan
         Without what stands still if the rule is for all detections; else as they are.
     """
+    scans = _checks.records("scans", scans, Scan)
     if rule != "always":
         return list(scans)
     return [Scan(scan.z[moves(scan.z)], scan.source[moves(scan.z)]) for scan in scans]
@@ -216,6 +217,8 @@ def run(scans, rule="always", assign=greedy_assign, manager=MANAGER):
     Macaveiu et al. (2013), Fig 6. The clutter rule there uses the range rate, since the radar
     stands still.
     """
+    _checks.instance("manager", manager, TrackManager)
+    scans = _checks.records("scans", scans, Scan)
     _checks.one_of("rule", rule, ("always", "new tracks only", "never"))
     s = settings()
     return track_scans(

@@ -78,6 +78,7 @@ def track(path, runs, *, rng, s=None):
     -----
     Macaveiu et al. (2013), Eqs 1 to 6.
     """
+    _checks.instance("path", path, Path2D)
     s = settings() if s is None else s
     z = measure(path.truth, runs, rng=rng, s=s)
     H, E_z = np.eye(4), s.E_z
@@ -134,6 +135,7 @@ def errors(paths, runs, *, rng, s=None):
     ValueError
         See `track`.
     """
+    paths = _checks.records("paths", paths, Path2D)
     s = settings() if s is None else s
     children = rng.spawn(len(paths))
     z = [measure(path.truth, runs, rng=c, s=s) for path, c in zip(paths, children, strict=True)]

@@ -255,6 +255,7 @@ def range_claims(result):
     claimed : ndarray, shape (M,)
         Median over the runs of its standard deviation as the filter believes it, in m.
     """
+    _checks.instance("result", result, Consistency)
     u = result.truth[:, :3] / np.linalg.norm(result.truth[:, :3], axis=-1, keepdims=True)
     error = np.sum((result.x - result.truth)[..., :3] * u, axis=-1)
     variance = np.einsum("mi,rmij,mj->rm", u, result.P[..., :3, :3], u)

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from ... import _checks
 from ..._data import read_json, read_lines
 from ..._records import record
 from .noise_sweep import Figure4, SweepReading, noise_levels
@@ -140,6 +141,7 @@ def dots_log_likelihood(model, position, velocity):
     to the covariance of the mean of the dots: else our own Monte Carlo error would look like a
     misfit.
     """
+    _checks.instance("model", model, Structure)
     dots = np.log(np.stack([position, velocity], axis=-1))
     levels, draws = dots.shape[:2]
     size, axes = np.linalg.eigh(model.between)
@@ -182,6 +184,7 @@ def figure4_score(figure, published, *, rng, resamples=200):
     low, high : float
         Central 95 % of the score when our sequences are drawn again from themselves.
     """
+    _checks.instance("figure", figure, Figure4)
     rows = [int(np.argmin(np.abs(noise_levels() - variance))) for variance in figure.variance]
     dots = published.position[rows], published.velocity[rows]
     draws = figure.position.shape[1]

@@ -209,6 +209,7 @@ def nearer_to_twin(result):
     -------
     ndarray of bool, shape (runs,)
     """
+    _checks.instance("result", result, PostMortem)
     distance = [
         np.linalg.norm((result.start - x)[:, :3], axis=-1)
         for x in (planar_twin(result.true_start), result.true_start)
@@ -249,6 +250,7 @@ def measures(result):
     dict of str to ndarray, shape (runs,)
         By name and unit.
     """
+    _checks.instance("result", result, PostMortem)
     last = replace(result.track, x=result.track.x[:, -1:], P=result.track.P[:, -1:])
     return {
         "position RMSE (m)": result.position_rmse,
@@ -271,6 +273,7 @@ def outcomes(result):
     dict of str to ndarray, shape (runs,)
         By name and unit; `reported_outcomes` has the report's.
     """
+    _checks.instance("result", result, PostMortem)
     final = result.track.x[:, -1]
     return {
         "position RMSE (m)": result.position_rmse,

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from ... import _checks
 from ...evaluation.consistency import nees
 from ...evaluation.whiteness import innovation_whiteness
 from ...tracking.fusion import covariance_intersection, fuse_measurements, fuse_state_vectors
@@ -29,6 +30,7 @@ def merged_doppler(doppler, snr_db):
     variance_ratio : float
         Variance of its measurements over that of one of the two.
     """
+    _checks.instance("doppler", doppler, FilteredDoppler)
     R = measurement_variance(doppler.windows, snr_db).reshape(-1, 1, 1, 1, 1)
     z, both = fuse_measurements(doppler.v[:, :, 0, :, None], R, doppler.v[:, :, 1, :, None], R)
     seen = doppler.snr_db.mean(axis=2, keepdims=True)
@@ -55,6 +57,7 @@ def fusions(doppler, snr_db, *, delayed=True, hop=1):
         same for all runs, and the numbers ``sample (K,)`` of the samples that they belong to. The
         first estimates, up to the first scored sample, are left out.
     """
+    _checks.instance("doppler", doppler, FilteredDoppler)
     settings = dict(delayed=delayed, hop=hop)
     track = filter_velocity(doppler, snr_db, **settings)
     merged, ratio = merged_doppler(doppler, snr_db)
@@ -183,6 +186,7 @@ def gains(doppler, snr_db, path):
         By the step, root mean square errors in m/s in the maneuver and at constant velocity, and
         beside each the error of one sensor with a fixed window over it, in the same run.
     """
+    _checks.instance("doppler", doppler, FilteredDoppler)
     rows = {}
     for delayed, hop in ((False, 1), (False, chosen().fixed_window), (True, 1),
                          (True, chosen().fixed_window)):  # fmt: skip
@@ -255,6 +259,7 @@ def error_correlation(doppler, v, lags):
     ndarray, shape (lags + 1,)
         Mean over the runs and sensors, from lag 0 on; see `overlap_correlation_discrete`.
     """
+    _checks.instance("doppler", doppler, FilteredDoppler)
     error = (doppler.v[0] - v).reshape(-1, doppler.v.shape[-1])
     count = error.shape[-1]
     products = [np.mean(error[:, : count - lag] * error[:, lag:]) for lag in range(lags + 1)]

@@ -166,6 +166,7 @@ def choose_window(table, acceleration, snr_db):
     ValueError
         If a value is not finite.
     """
+    _checks.instance("table", table, WindowTable)
     from ._pair_kernel import choose
 
     a, snr_db = np.broadcast_arrays(
