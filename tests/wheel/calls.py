@@ -59,11 +59,13 @@ def filtered_afresh(dl, np):
 
 
 def judged(dl, rng):
-    """Return for each claim on the stand-in whether its verdict is that on record."""
-    asheim = dl.systems.asheim2015
-    claims = dl.evaluation.claims.read_claims(asheim.published.data_file("stand_in_claims.toml"))
-    found = asheim.claims.stand_in_evidence(rng=rng, runs=40)
-    judgments = dl.evaluation.verdicts.judge_all(claims, found)
+    """Read all claims; return for those on the stand-in whether the verdict is that on record."""
+    read, systems = dl.evaluation.claims.read_claims, dl.systems
+    for name in dir(systems):
+        read(getattr(systems, name).published.data_file("claims.toml"))
+    found = systems.asheim2015.claims.stand_in_evidence(rng=rng, runs=40)
+    told = read(systems.asheim2015.published.data_file("stand_in_claims.toml"))
+    judgments = dl.evaluation.verdicts.judge_all(told, found)
     return [judgment.verdict == judgment.claim.verdict for judgment in judgments]
 
 
