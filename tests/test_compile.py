@@ -1,10 +1,12 @@
 """What numba compiles is kept where it can be, and compiled anew where it cannot."""
 
 import re
+import zipfile
 from pathlib import Path
 
 import numba
 import pytest
+from numba.core.caching import CacheImpl
 
 import dopplerlib
 from dopplerlib._compile import cached_njit, fingerprint
@@ -53,6 +55,21 @@ def test_what_was_compiled_is_found_again(source):
 def test_a_function_without_a_source_is_compiled_all_the_same(tmp_path, where):
     for _ in range(2):
         assert kept(tmp_path / where) == (0, 1)
+
+
+@pytest.mark.skipif(
+    not any("Zip" in place.__name__ for place in CacheImpl._locator_classes),
+    reason="this numba keeps nothing for a zip file",
+)
+def test_a_function_from_a_zip_file_is_kept_at_home_if_that_can_be(tmp_path, monkeypatch):
+    archive = tmp_path / "archive.zip"
+    with zipfile.ZipFile(archive, "w") as file:
+        file.writestr("module.py", ADD)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    assert [kept(archive / "module.py") for _ in range(2)] == [(0, 1), (1, 0)]
+    monkeypatch.setenv("HOME", str(archive))  # no folder can be made below a file
+    assert [kept(archive / "module.py") for _ in range(2)] == [(0, 1), (0, 1)]
 
 
 def test_a_place_that_fails_later_on_is_done_without(source):
