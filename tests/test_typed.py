@@ -4,6 +4,7 @@ import ast
 import inspect
 from importlib import import_module
 from pathlib import Path
+from typing import get_overloads
 
 import pytest
 
@@ -39,12 +40,15 @@ def edge(module):
 @pytest.mark.parametrize("name", MODULES)
 def test_every_argument_and_result_of_the_public_edge_has_a_hint(name):
     for function, value in edge(import_module(name)).items():
-        signature = inspect.signature(value)
-        hints = {p.name: p.annotation for p in signature.parameters.values()}
-        hints.pop("self", None), hints.pop("cls", None)
-        hints["return"] = signature.return_annotation
-        bare = [one for one, hint in hints.items() if hint is inspect.Signature.empty]
-        assert bare == [], function
+        for signature in map(inspect.signature, get_overloads(value) or [value]):
+            check_hints(function, signature)
+
+
+def check_hints(function, signature):
+    hints = {p.name: p.annotation for p in signature.parameters.values()}
+    hints["return"] = signature.return_annotation
+    bare = {one for one, hint in hints.items() if hint is inspect.Signature.empty}
+    assert bare <= {"self", "cls"}, function
 
 
 def test_what_the_library_gives_at_its_top_is_of_these_modules():

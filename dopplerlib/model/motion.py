@@ -59,7 +59,7 @@ def constant_velocity(
     return F, Q
 
 
-def acceleration_gain(T, noise):
+def acceleration_gain(T: FloatArray, noise: Literal["common", "independent"]) -> FloatArray:
     """Return G of `constant_velocity`, (..., 6, 1) or (..., 6, 3): Q is sigma_p^2 G G' (Eq 9)."""
     T = T[..., None, None]
     axes = np.ones((3, 1)) if noise == "common" else np.eye(3)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import _checks
-from .._typing import ArrayLike, BoolArray
+from .._typing import ArrayLike, BoolArray, ComplexArray
 
 _BLOCK = 32  # samples that show a branch's noise
 # So many samples stand still if they move less than this share of the module's noise.
@@ -112,7 +112,9 @@ def valid_samples(
     return valid.reshape(shape)
 
 
-def known_samples(name, x, valid, shape):
+def known_samples(
+    name: str, x: ArrayLike, valid: ArrayLike | None, shape: tuple[int | None, ...]
+) -> tuple[ComplexArray, BoolArray | None]:
     """Return checked samples with zeros where they are not valid, and the mask they came with.
 
     The mask is None if all are to be taken for measurements, else of the shape of the samples.
