@@ -79,8 +79,10 @@ def filter_pair(
                 variance = c0 + h * c1 + R[w]
                 nu = v[w, r, s, k] - velocity - h * acceleration
                 k0, k1 = c0 / variance, c1 / variance
-                x[r, s, k, 0], x[r, s, k, 1] = velocity + k0 * nu, acceleration + k1 * nu
                 innovation[r, s, k], S[r, s, k] = nu, variance
+                if np.isnan(nu):  # missing: the prediction stays
+                    k0, k1, nu = 0.0, 0.0, 0.0
+                x[r, s, k, 0], x[r, s, k, 1] = velocity + k0 * nu, acceleration + k1 * nu
                 a, b, c, d = 1 - k0, -k0 * h, -k1, 1 - k1 * h
                 A[s, 0, 0], A[s, 0, 1], A[s, 1, 0], A[s, 1, 1] = a, b, c, d
                 # In the form of Joseph.

@@ -24,14 +24,15 @@ def _heights(new_re, new_im, old_re, old_im, height):
         height[k] = a * a + b * b
 
 
-def slide(re, im, wave_re, wave_im, windows, first, place, power):
+def slide(re, im, loud, wave_re, wave_im, windows, first, place, power):
     """Write `place` (W, R, K) in bins and `power` of the highest bin of each window.
 
     `re`, `im` (R, samples) hold records, `wave_re`, `wave_im` (N, N) the powers of the N-th root
     of unity: row m, column k is exp(-2 pi j m k / N). The window of sample n ends with it; the
     first has n = `first`. The phase of a transform is counted from sample 0 and not from the
     start of the window, so that it is the difference of two sums from there. All in single
-    precision: frequencies err by about a hundredth of a bin.
+    precision: frequencies err by about a hundredth of a bin. Where `loud` (R, samples) is True, the
+    sums begin anew, as they would keep the rounding; windows with such a sample get NaN.
     """
     records, samples = re.shape
     n = wave_re.shape[0]
@@ -45,16 +46,25 @@ def slide(re, im, wave_re, wave_im, windows, first, place, power):
     for r in range(records):
         sum_re[ring - 1] = 0
         sum_im[ring - 1] = 0
+        last = -1  # before it, sums are not those that go on
         for m in range(samples):
             new, old = m % ring, (m - 1) % ring
             row = m % n
-            _sums(
-                re[r, m], im[r, m], wave_re[row], wave_im[row],
-                sum_re[old], sum_im[old], sum_re[new], sum_im[new],
-            )  # fmt: skip
+            if loud[r, m]:
+                sum_re[new] = 0
+                sum_im[new] = 0
+                last = m
+            else:
+                _sums(
+                    re[r, m], im[r, m], wave_re[row], wave_im[row],
+                    sum_re[old], sum_im[old], sum_re[new], sum_im[new],
+                )  # fmt: skip
             if m < first:
                 continue
             for w in range(len(windows)):
+                if m - windows[w] < last:
+                    place[w, r, m - first], power[w, r, m - first] = np.nan, 0.0
+                    continue
                 old = (m - windows[w]) % ring
                 _heights(sum_re[new], sum_im[new], sum_re[old], sum_im[old], height)
                 top = bits[0]

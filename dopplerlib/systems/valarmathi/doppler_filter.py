@@ -11,6 +11,8 @@ from ..._records import record
 from ...signal.laws import crlb_frequency_std
 from .published import chosen, stated
 
+_LOUD = 1e4  # of the median sample: beyond, sums in single precision keep too much of it
+
 
 @record
 class FilteredDoppler:
@@ -23,9 +25,10 @@ class FilteredDoppler:
     first : int
         Sample with which the first windows end.
     v : ndarray, shape (W, ..., K)
-        Measured velocities in m/s, one per sample.
+        Measured velocities in m/s, one per sample; NaN where all samples of the window are the
+        same, or one is so loud that it hides the others.
     snr_db : ndarray, shape (W, ..., K)
-        Signal-to-noise ratios that the spectra show, in dB.
+        Signal-to-noise ratios that the spectra show, in dB; -30, the least, where `v` is NaN.
     """
 
     windows: np.ndarray
@@ -84,17 +87,25 @@ def doppler_filter(x, windows=None, first=None):
             f"the {n} samples, got {windows.tolist()} and {first}"
         )
     rows = x.reshape(-1, n)
-    place, power = _peaks(rows, windows, first, own.nfft)
+    size = np.maximum(np.abs(rows.real), np.abs(rows.imag))
+    usual = np.median(size, axis=-1, keepdims=True)
+    loud = (size > _LOUD * usual) & (usual > 0)
+    rows = np.where(loud, 0.0, rows)
+    place, power = _peaks(rows, loud, windows, first, own.nfft)
     energy = np.zeros((len(rows), n + 1))
     np.cumsum(rows.real**2 + rows.imag**2, axis=-1, out=energy[:, 1:])
+    moves = np.zeros((len(rows), n), dtype=int)
+    np.cumsum(rows[:, 1:] != rows[:, :-1], axis=-1, out=moves[:, 1:])
+    last = np.arange(first + 1, n + 1)
     snr = power  # to save memory, in place
     for w, window in enumerate(windows):
-        amp2 = power[w] / window**2
-        last = np.arange(first + 1, n + 1)
+        place[w][moves[:, last - 1] == moves[:, last - window]] = np.nan
+        amp2 = np.where(np.isnan(place[w]), 0.0, power[w] / window**2)
         mean = (energy[:, last] - energy[:, last - window]) / window
         # A noise of a billionth is less than single precision can tell from none.
         noise = np.maximum(mean - amp2, 1e-9 * mean) * (window / (window - 1.5))
-        snr[w] = np.maximum(amp2 / noise - 1.5 / window, 1e-3)
+        ratio = np.divide(amp2, noise, out=np.zeros_like(amp2), where=noise > 0)
+        snr[w] = np.maximum(ratio - 1.5 / window, 1e-3)
     shape = (len(windows), *x.shape[:-1], n - first)
     v = place * (own.wavelength / (2 * own.nfft * T))
     return FilteredDoppler(windows, first, v.reshape(shape), 10 * np.log10(snr).reshape(shape))
@@ -119,7 +130,7 @@ def measurement_variance(windows, snr_db):
     return (chosen().wavelength / 2 * std) ** 2
 
 
-def _peaks(rows, windows, first, nfft):
+def _peaks(rows, loud, windows, first, nfft):
     """Return places in bins and powers (W, R, K), the records shared among the processors."""
     from ._sliding_kernel import compiled  # here: numba takes half a second to load
 
@@ -132,8 +143,9 @@ def _peaks(rows, windows, first, nfft):
 
     def work(part):
         compiled(
-            re[part], im[part], wave_re, wave_im, windows, first, place[:, part], power[:, part]
-        )
+            re[part], im[part], loud[part], wave_re, wave_im, windows, first,
+            place[:, part], power[:, part],
+        )  # fmt: skip
 
     share(work, len(rows))
     return place, power
