@@ -6,7 +6,13 @@ Seeds were written down once and are not chosen.
 import numpy as np
 import pytest
 
-from dopplerlib.signal.impairments import quantize
+from dopplerlib.signal.front_end import lowpass, lowpass_decimate
+from dopplerlib.signal.impairments import (
+    branches_differ,
+    correct_iq_imbalance,
+    quantize,
+    remove_mean,
+)
 from dopplerlib.signal.synthesis import complex_noise, tone
 from dopplerlib.signal.validity import valid_samples
 
@@ -173,3 +179,67 @@ def test_what_makes_no_sense_is_refused_by_name():
     ]:
         with pytest.raises(ValueError, match=message):
             valid_samples(**({"x": np.ones(5)} | kwargs))
+
+
+@pytest.fixture(scope="module")
+def masked():
+    """Return samples, and a mask that leaves out a gap, a module and the end of another."""
+    x = six(400) + (0.5 - 0.2j)
+    valid = np.ones(x.shape, dtype=bool)
+    valid[0, 100:150] = valid[1] = valid[2, 390:] = False
+    return x, valid
+
+
+@pytest.mark.parametrize("filling", [0.0, np.nan, 1e300])
+def test_means_and_moments_are_those_of_valid_samples(masked, filling):
+    x, valid = masked
+    given = np.where(valid, x, filling)
+    with np.errstate(all="raise"):
+        centered = remove_mean(given, valid)
+        balanced = correct_iq_imbalance(centered, valid)
+    assert (centered[~valid] == 0).all()
+    assert (balanced[~valid] == 0).all()
+    for row, keep in enumerate(valid):
+        part = x[row, keep]
+        if keep.any():
+            np.testing.assert_allclose(centered[row, keep], part - part.mean(), atol=1e-15)
+            alone = correct_iq_imbalance(part - part.mean())
+            np.testing.assert_allclose(balanced[row, keep], alone, atol=1e-14)
+    every = np.ones(x.shape, dtype=bool)
+    np.testing.assert_array_equal(remove_mean(x, every), remove_mean(x))
+    y = remove_mean(x)
+    np.testing.assert_array_equal(correct_iq_imbalance(y, every), correct_iq_imbalance(y))
+
+
+@pytest.mark.parametrize("factor", [1, 4])
+def test_a_filter_spreads_what_is_invalid_by_its_length(masked, factor):
+    """What is said to be valid depends on valid samples alone; the first outputs are not."""
+    x, valid = masked
+    taps = 20 * factor + 1 if factor > 1 else 1
+    results = []
+    for filling in (0.0, np.nan, 1e8):
+        y, fs, delay, kept = lowpass_decimate(np.where(valid, x, filling), FS, factor, valid=valid)
+        assert (y.shape, fs, delay) == (kept.shape, FS / factor, (taps - 1) / 2 / FS)
+        results.append(y)
+        expected = [
+            [row[m - taps + 1 : m + 1].all() if m >= taps - 1 else False
+             for m in range(0, len(row), factor)]
+            for row in valid
+        ]  # fmt: skip
+        np.testing.assert_array_equal(kept, expected)
+        whole, _, _ = lowpass_decimate(x, FS, factor)
+        np.testing.assert_allclose(y[kept], whole[kept], atol=1e-12)
+    np.testing.assert_array_equal(results[0], results[1])
+    assert not lowpass(x[:, :5], FS, 100.0, 7, valid[:, :5])[2].any()
+
+
+def test_a_module_without_direction_is_told_from_one_that_is_dead():
+    x = six(500)
+    x[0], x[1], x[2], x[3] = x[0].real, 1j * x[1].imag, (1 - 2j) * x[2].real, 0
+    expected = [False, False, False, True, True, True]
+    for gain in (1.0, 1e-200, 1e200):
+        with np.errstate(all="raise"):
+            assert branches_differ(gain * x).tolist() == expected
+    valid = np.ones((6, 1), dtype=bool)
+    valid[:3] = False
+    assert branches_differ(x, valid).all()
