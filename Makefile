@@ -45,8 +45,8 @@ book: $(VENV)/.ready  ## build the book: book/_build/html/index.html
 	$(PY) -m tools.book
 
 .PHONY: test
-test: lint  ## check everything: style, book without warnings, tests, doctests, notebooks
-	$(MAKE) --jobs=2 book tests
+test: $(VENV)/.ready  ## check everything: style, book without warnings, tests, doctests, notebooks
+	$(MAKE) --jobs=2 lint book tests
 
 .PHONY: tests
 tests: compile  ## run the tests, the examples in docstrings, and the chapters

@@ -17,7 +17,7 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
-from dopplerlib._files import write_text
+from dopplerlib._files import file_to_write, write_text
 from tools.command import parser, start
 from tools.isolation import ONE_THREAD, own_profile
 from tools.prose import as_text, text_path
@@ -132,6 +132,15 @@ def _without_images(outputs):
     ]
 
 
+def writable(*paths):
+    """End the command at once if what it makes could not be written in the end."""
+    try:
+        for path in paths:
+            file_to_write(path)
+    except ValueError as error:
+        sys.exit(f"error: {error}")
+
+
 def executed(paths, timeout):
     """Yield every path with the text that executing it gives, None if it fails, and the seconds."""
     for number, path in enumerate(paths, start=1):
@@ -155,12 +164,15 @@ def main(argv=None):
     options.add_argument("--timeout", type=int, default=300, help="seconds a cell may take")
     options.add_argument("notebooks", nargs="*", type=Path, help="default: all of the book")
     chosen = options.parse_args(argv)
+    paths = chosen.notebooks or chapters()
+    if not chosen.check:
+        writable(*paths)
     if chosen.text:
-        for path in chosen.notebooks or chapters():
+        for path in paths:
             write_beside(path, path.read_text(encoding="utf8"))
         return 0
     bad = False
-    for path, new, _ in executed(chosen.notebooks or chapters(), chosen.timeout):
+    for path, new, _ in executed(paths, chosen.timeout):
         if new is None:
             bad = True
         elif chosen.check:

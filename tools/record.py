@@ -19,7 +19,7 @@ from dopplerlib._files import write_text
 from dopplerlib.evaluation.claims import VERDICTS
 from tools import seeds as judged
 from tools.command import parser, start
-from tools.notebooks import ROOT, chapters, differences, executed
+from tools.notebooks import ROOT, chapters, differences, executed, writable
 
 PAGE = ROOT / "book" / "reproducibility.md"
 SEED = re.compile(r"default_rng\(([\d_]+)\)")
@@ -196,7 +196,9 @@ def main(argv=None):
     options.add_argument(
         "--hashes", action="store_true", help="run nothing, keep what was measured"
     )
-    if options.parse_args(argv).hashes:
+    chosen = options.parse_args(argv)
+    writable(PAGE)
+    if chosen.hashes:
         measured = recorded(PAGE.read_text(encoding="utf8"))
     else:
         print("all chapters, then all claims; interrupted, it starts over", file=sys.stderr)

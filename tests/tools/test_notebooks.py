@@ -100,3 +100,11 @@ def test_a_chapter_needs_no_home_and_takes_nothing_from_it(chapter, monkeypatch,
     assert notebooks.main([str(path)]) == 0
     assert "True" in path.read_text(encoding="utf8")
     assert dict(os.environ) == before
+
+
+def test_a_chapter_that_may_not_be_written_is_refused_before_it_is_executed(chapter, monkeypatch):
+    path = chapter("print(42)")
+    path.chmod(0o444)
+    monkeypatch.setattr(notebooks, "execute", None)
+    with pytest.raises(SystemExit, match=r"error: path .* may be written to, got .*chapter\.ipynb"):
+        notebooks.main([str(path)])
