@@ -40,7 +40,7 @@ def main(steps):
     print(f"{steps} steps; a million of them last 1000 s of the target's time.\n")
     print("| update | not positive definite at step | largest asymmetry | least eigenvalue of P |")
     print("|---|---|---|---|")
-    runs = {"dopplerlib: sensor by sensor, 21 entries": of_the_library(scenario)}
+    runs = {"dopplerlib: U D U', sensor by sensor": of_the_library(scenario)}
     runs |= {name: plain(scenario, form) for name, form in FORMS.items()}
     for name, run in runs.items():
         print(f"| {name} | {watch(name, run, scenario, steps)} |", flush=True)

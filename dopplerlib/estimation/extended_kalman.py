@@ -10,7 +10,7 @@ import numpy as np
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
 from ..model.doppler import check_clear_of_sensors
-from ..model.motion import acceleration_gain, constant_velocity
+from ..model.motion import acceleration_gain
 from ..model.radar_array import RadarArray
 from .track import Track
 
@@ -115,12 +115,12 @@ def ekf(
     _checks.instance("array", array, RadarArray)
     z = _measurements(z, array)
     T = _intervals(T, z.shape[-2])
-    F, _ = constant_velocity(T, sigma_p, noise)
-    columns = np.ascontiguousarray(sigma_p * np.swapaxes(acceleration_gain(T, noise), -1, -2))
+    G, sigma_p = acceleration_gain(T, sigma_p, noise)
+    columns = np.ascontiguousarray(sigma_p * np.swapaxes(G, -1, -2))
     variance = _variance(sigma_f, z.shape[-2:])
     lower, upper = gate_bounds(gate, len(array), confidence)
     x0 = _checks.finite("x0", x0, (6,))
-    check_clear_of_sensors("F x0", x0 @ F[0].T, array)
+    check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
     P0 = _checks.covariance("P0", P0, 6, definite=False)
     keep = _checks.some_of("keep", keep, _OPTIONAL)
     if workers is not None:
@@ -243,6 +243,8 @@ def _measurements(z, array):
 
 def _intervals(T, samples):
     """Return the intervals before the samples, (samples,), or (1,) if all are the same."""
+    if type(T) is float:  # a shorter way to the same
+        return np.array([_checks.one_number("T", T, _checks.deviation)])
     T = _checks.deviation("T", T)
     if T.shape not in ((), (samples,)):
         raise ValueError(

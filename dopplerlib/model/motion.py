@@ -7,6 +7,9 @@ import numpy as np
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
 
+# The axes that each acceleration drives.
+_AXES = {"common": np.ones((3, 1)), "independent": np.eye(3)}
+
 
 def constant_velocity(
     T: ArrayLike, sigma_p: float, noise: Literal["common", "independent"] = "common"
@@ -48,19 +51,24 @@ def constant_velocity(
     (1, 3)
     """
     T = _checks.deviation("T", T)
-    sigma_p = _checks.one_number("sigma_p", sigma_p, _checks.deviation)
-    _checks.one_of("noise", noise, ("common", "independent"))
+    G, sigma_p = acceleration_gain(T, sigma_p, noise)
     F = np.eye(6) + T[..., None, None] * np.eye(6, k=3)
-    G = acceleration_gain(T, noise)
-    with np.errstate(over="ignore", invalid="ignore"):
-        Q = sigma_p**2 * (G @ np.swapaxes(G, -1, -2))
-    if not np.isfinite(Q).all():
+    return F, sigma_p**2 * (G @ np.swapaxes(G, -1, -2))
+
+
+def acceleration_gain(
+    T: FloatArray, sigma_p: float, noise: Literal["common", "independent"]
+) -> tuple[FloatArray, float]:
+    """Return G of shape (..., 6, 1) or (..., 6, 3), and sigma_p as a float (Eq 9).
+
+    Raises ValueError unless sigma_p and noise are those of `constant_velocity`, and sigma_p^2 G G',
+    which is Q, is finite. T is an array that was checked.
+    """
+    sigma_p = _checks.one_number("sigma_p", sigma_p, _checks.deviation)
+    axes = _AXES[_checks.one_of("noise", noise, tuple(_AXES))]
+    interval = T[..., None, None]
+    G = np.concatenate([interval * interval / 2 * axes, interval * axes], axis=-2)
+    largest = float(G.max(initial=0.0))
+    if not sigma_p * sigma_p * (largest * largest) < np.inf:
         raise ValueError(f"T must give a finite Q with sigma_p = {sigma_p}, got {T.max()}")
-    return F, Q
-
-
-def acceleration_gain(T: FloatArray, noise: Literal["common", "independent"]) -> FloatArray:
-    """Return G of `constant_velocity`, (..., 6, 1) or (..., 6, 3): Q is sigma_p^2 G G' (Eq 9)."""
-    T = T[..., None, None]
-    axes = np.ones((3, 1)) if noise == "common" else np.eye(3)
-    return np.concatenate([T**2 / 2 * axes, T * axes], axis=-2)
+    return G, sigma_p
