@@ -11,6 +11,7 @@ from .._typing import ArrayLike, FloatArray
 _AXES = {"common": np.ones((3, 1)), "independent": np.eye(3)}
 
 
+@_checks.quiet
 def constant_velocity(
     T: ArrayLike, sigma_p: float, noise: Literal["common", "independent"] = "common"
 ) -> tuple[FloatArray, FloatArray]:
