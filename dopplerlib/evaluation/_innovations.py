@@ -132,6 +132,8 @@ def ljung_box(white, there, lags, least=None):
         raise ValueError("innovation must vary in time, got a component that is constant")
     n = np.where(used, n, 1)
     white = np.where(there, white - (white.sum(axis=-2) / n)[..., None, :], 0.0)
+    # The unit does not matter; a power of two changes no digit, and no square is zero or infinite.
+    white = np.ldexp(white, -np.frexp(np.abs(white).max(axis=-2, keepdims=True))[1])
     power = np.where(used, np.sum(white**2, axis=-2), 1.0)
     found = zip(*(_lag(white, there, lag) for lag in range(1, lags + 1)), strict=True)
     products, pairs = (np.stack(one, axis=-2) for one in found)

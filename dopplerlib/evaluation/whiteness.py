@@ -72,8 +72,10 @@ def innovation_mean(innovation: ArrayLike, S: ArrayLike) -> tuple[FloatArray, Fl
     samples = there.sum(axis=-2)
     known = samples > 0
     samples = np.maximum(samples, 1)
-    mean = innovation.sum(axis=-2) / samples
-    error = np.sqrt(variance.sum(axis=-2)) / samples
+    with np.errstate(over="ignore", invalid="ignore"):
+        mean = innovation.sum(axis=-2) / samples
+        error = np.sqrt(variance.sum(axis=-2)) / samples
+    _checks.estimates("innovation, S", mean, error, what="averages")
     return np.where(known, mean, np.nan), np.where(known, error, np.nan)
 
 

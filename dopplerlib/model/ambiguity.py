@@ -134,10 +134,12 @@ def ring_family_direction(x: ArrayLike, radius: float) -> FloatArray:
     p, v = x[..., :3], x[..., 3:]
     A = np.sum(p * p, axis=-1) + radius**2
     across = np.sum(p[..., 1:] ** 2, axis=-1)
-    ahead = (A - 2 * across) / p[..., 0]
     # From x v_x = p.v - y v_y - z v_z, whose two parts grow like t and t^3.
     turning = np.sum(p * v, axis=-1) - 3 * np.sum(p[..., 1:] * v[..., 1:], axis=-1)
-    ahead_v = (turning - ahead * v[..., 0]) / p[..., 0]
+    with np.errstate(all="ignore"):
+        ahead = (A - 2 * across) / p[..., 0]
+        ahead_v = (turning - ahead * v[..., 0]) / p[..., 0]
+    _checks.estimates("x, radius", ahead, ahead_v, what="direction")
     return np.concatenate(
         [ahead[..., None], 2 * p[..., 1:], ahead_v[..., None], v[..., 1:]], axis=-1
     )
