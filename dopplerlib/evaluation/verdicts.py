@@ -1,6 +1,6 @@
 """The verdict on a claim: what the document says beside what we find."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from reprlib import repr as short
 from typing import Any
 
@@ -32,6 +32,11 @@ class Draws:
 
     values: np.ndarray
     published: float | None = None
+
+    def __post_init__(self):
+        """Keep the values, also those of an iterator: they are looked at more than once."""
+        if isinstance(self.values, Iterator):
+            object.__setattr__(self, "values", tuple(self.values))
 
 
 @record

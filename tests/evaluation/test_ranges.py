@@ -18,11 +18,20 @@ from dopplerlib import (
     nees_samples,
     nis,
 )  # fmt: skip
-from dopplerlib.evaluation.alarms import innovation_alarms
+from dopplerlib._records import record
+from dopplerlib.evaluation.alarms import first_alarm, innovation_alarms
+from dopplerlib.evaluation.averages import effective_samples
+from dopplerlib.evaluation.claims import Claim
 from dopplerlib.evaluation.directions import errors_by_direction
-from dopplerlib.evaluation.intervals import mean_interval, quantile_interval, rms_interval
+from dopplerlib.evaluation.intervals import (
+    mean_interval,
+    quantile_interval,
+    rms_interval,
+    share_interval,
+)
 from dopplerlib.evaluation.observability import rms_bounds, seen_directions
 from dopplerlib.evaluation.range_bounds import range_crlb
+from dopplerlib.evaluation.verdicts import Draws, judge
 from dopplerlib.model.ambiguity import ring_family, ring_family_direction, ring_family_limits
 from dopplerlib.model.information import fisher_information, inverse_information
 from dopplerlib.model.kinematics import (
@@ -160,3 +169,44 @@ def test_a_shift_does_not_depend_on_the_unit_of_length(power):
     unit = 10.0**power
     scaled = RadarArray(RING.positions * unit, RING.wavelength * unit)
     np.testing.assert_allclose(doppler_shift(X * unit, scaled), doppler_shift(X, RING), rtol=1e-12)
+
+
+ITERATED = {
+    "doppler_shift": lambda of: doppler_shift(of(X), RING),
+    "RadarArray": lambda of: RadarArray(of([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])),
+    "crlb": lambda of: crlb(of(X), RING, of([0.4] * 6), free=of([True] * 2 + [False] * 4)),
+    "polar_radar_h": lambda of: polar_radar_h(of(PLANE)),
+    "range_rate": lambda of: range_rate(of(PLANE), of([[0.0, 0.0]])),
+    "planar_twin": lambda of: planar_twin(of(X)),
+    "ring_family": lambda of: ring_family(X, 0.2, of([0.5, 1.5])),
+    "nis": lambda of: nis(of([1.0, 2.0]), of([[1.0, 0.0], [0.0, 1.0]])),
+    "nees": lambda of: nees(Track(np.ones((4, 2)), EYES, None, None, None, None), of([[0, 0]] * 4)),
+    "nees_samples": lambda of: nees_samples(of(EYES), of(np.eye(2)), of(np.eye(2))),
+    "innovation_mean": lambda of: innovation_mean(of(WHITE), of(ONES)),
+    "innovation_whiteness": lambda of: innovation_whiteness(of(WHITE), of(ONES), 2),
+    "alarms": lambda of: innovation_alarms(
+        Track(None, None, WHITE, ONES, None, None), of([20, 60])),
+    "first_alarm": lambda of: first_alarm(of([[False, True]]), of([20, 60])),
+    "errors_by_direction": lambda of: errors_by_direction(of([1.0, 1.0]), of(np.eye(2))),
+    "rms_bounds": lambda of: rms_bounds(of(np.eye(6)), of(X)),
+    "mean_interval": lambda of: mean_interval(of([1.0, 2.0, 3.0])),
+    "rms_interval": lambda of: rms_interval(of([1.0, 2.0, 3.0])),
+    "quantile_interval": lambda of: quantile_interval(of([1.0, 2.0, 3.0])),
+    "share_interval": lambda of: share_interval(of([True, False])),
+    "effective_samples": lambda of: effective_samples(of([0.5, 0.2]), 10),
+    "velocity_profile": lambda of: velocity_profile(of([0.0, 1.0]), 1.0, of([[0, 1, 2]])),
+    "quantize": lambda of: quantize(of([1.0, 1j]), 8, 1.0),
+    "judge": lambda of: [judge(CLAIM, draws).verdict for draws in [Draws(of(range(50)), 7.0)] * 2],
+    "Draws": lambda of: Draws(of([1.0, 2.0])),
+}  # fmt: skip
+CLAIM = Claim("a", "w", "s.", "random", "typical", "p", "c", "t")
+
+
+@pytest.mark.parametrize("of", [iter, lambda values: (one for one in values)])
+@pytest.mark.parametrize("name", ITERATED)
+def test_an_iterator_means_the_same_as_a_list(name, of):
+    @record
+    class Result:
+        value: object
+
+    assert Result(ITERATED[name](of)) == Result(ITERATED[name](list))
