@@ -48,6 +48,17 @@ def innovation_alarms(
     looking often does not raise more false alarms.
 
     Bar-Shalom, Li and Kirubarajan (2001), Section 5.4.
+
+    Examples
+    --------
+    A sensor that sticks ten deviations off after half of the record:
+
+    >>> from dopplerlib import Track
+    >>> innovation = np.resize([1.0, -1.0, 0.5], (60, 1))
+    >>> innovation[30:] += 10
+    >>> track = Track(None, None, innovation, np.ones((60, 1, 1)), None, None)
+    >>> innovation_alarms(track, [30, 40])["NIS average"].tolist()
+    [False, True]
     """
     innovation, S, there = of_track(track)
     samples = innovation.shape[-2]
@@ -89,6 +100,11 @@ def first_alarm(alarms: ArrayLike, looks: Iterable[int]) -> FloatArray:
     ------
     ValueError
         If `alarms` are not booleans, one for each of `looks`, or these do not ascend.
+
+    Examples
+    --------
+    >>> first_alarm([[False, True], [False, False]], [30, 40]).tolist()
+    [40.0, inf]
     """
     looks = _looks(looks)
     if looks != sorted(set(looks)):

@@ -43,6 +43,11 @@ class Check:
     ------
     ValueError
         If `kind` is unknown, `value` is no number or `limit` is not finite.
+
+    Examples
+    --------
+    >>> Check("Jacobian equals a complex step", "exact", 1e-15, 1e-12).passed
+    True
     """
 
     name: str
@@ -87,6 +92,11 @@ def complex_step_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     -----
     h(x + i e) = h(x) + i e h'(x) - ..., so the imaginary part over e is the derivative; no
     difference of nearly equal numbers is taken (Squire and Trapp 1998).
+
+    Examples
+    --------
+    >>> complex_step_jacobian([1, 0, 0, -1, 0, 0], RadarArray([[0, 0, 0]])).round(9)[0, 3:].tolist()
+    [-160.0, 0.0, 0.0]
     """
     x = _checks.finite("x", x, (6,))
     check_clear_of_sensors("x", x, _checks.instance("array", array, RadarArray))
@@ -138,6 +148,18 @@ def filter_checklist(
     ValueError
         If an argument is of the wrong kind, or what `tracker` or `jacobian` returns has the wrong
         shape.
+
+    Examples
+    --------
+    >>> from dopplerlib import doppler_jacobian, ekf
+    >>> scenario = Scenario(
+    ...     RadarArray.ring(6, 0.2), x0=[0.8, 0.1, 0.1, -0.7, 0, 0],
+    ...     T=0.001, samples=100, sigma_f=0.4, sigma_p=0.4, P0=0.1 * np.eye(6),
+    ... )
+    >>> rng = np.random.default_rng(1)
+    >>> checks = filter_checklist(ekf, doppler_jacobian, scenario, rng=rng, runs=20, samples=20)
+    >>> [check.name for check in checks if not check.passed]
+    []
     """
     s = _checks.instance("scenario", scenario, Scenario)
     _checks.generator("rng", rng)

@@ -75,6 +75,12 @@ def read_claims(path: FileSource) -> tuple[Claim, ...]:
     ValueError
         If the file cannot be read or is not TOML, a claim lacks an entry, has one that is unknown
         or of the wrong kind, or its name is used twice. The message begins with the file's name.
+
+    Examples
+    --------
+    >>> from dopplerlib._data import data
+    >>> read_claims(data("mittermaier2016", "claims.toml"))[0].id
+    'sensitivity'
     """
     with _toml.tables(path) as file:
         return _toml.entries(file, "claim", Claim, check_claim)

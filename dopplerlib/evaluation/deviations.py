@@ -52,6 +52,11 @@ class Deviations:
     ------
     ValueError
         If an entry is no `Deviation`.
+
+    Examples
+    --------
+    >>> Deviations([Deviation("box", "Sec 3", "gap", "no box", "two meters", "start", "boxes")])
+    1 deviations: 1 gap, 0 contradictions, 0 misprints
     """
 
     entries: tuple
@@ -90,6 +95,12 @@ def read_deviations(path: FileSource) -> Deviations:
         If the file cannot be read or is not TOML, a deviation lacks an entry, has one that is
         unknown or of the wrong kind, or a name is used twice. The message begins with the file's
         name.
+
+    Examples
+    --------
+    >>> from dopplerlib._data import data
+    >>> read_deviations(data("mittermaier2016", "deviations.toml")).entries[0].kind in KINDS
+    True
     """
     with _toml.tables(path) as file:
         return Deviations(_toml.entries(file, "deviation", Deviation, _check))

@@ -26,6 +26,11 @@ class IntervalTable:
     ------
     ValueError
         If there is no row, the rows do not hold the same quantities, or `statistic` is unknown.
+
+    Examples
+    --------
+    >>> IntervalTable({"ours": {"error": np.arange(9.0)}}, "mean")
+    means of 1 variants
     """
 
     rows: dict

@@ -24,6 +24,11 @@ class Estimate:
     ------
     ValueError
         If one of them is no number. NaN is one, of which `judge` makes no verdict.
+
+    Examples
+    --------
+    >>> Estimate(2.0, 1.5, 2.5).half_width
+    0.5
     """
 
     value: float

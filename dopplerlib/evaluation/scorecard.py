@@ -24,6 +24,15 @@ class Scorecard:
     ------
     ValueError
         If one is no `Judgment`.
+
+    Examples
+    --------
+    >>> from dopplerlib.evaluation.claims import Claim
+    >>> from dopplerlib.evaluation.verdicts import judge
+    >>> claim = Claim("pi", "Sec 1", "the circle's number", "deterministic", "reproduced",
+    ...               "page", "cell", "test", published=3.14, rounding=0.005)
+    >>> Scorecard([judge(claim, 3.14159)]).counts
+    {'reproduced': 1}
     """
 
     judgments: tuple

@@ -169,6 +169,19 @@ def judge_all(claims: Iterable[Claim], evidence: dict[str, Any]) -> tuple[Judgme
     ------
     ValueError
         If a claim has no evidence, evidence has no claim, or the two do not fit; see `judge`.
+
+    Examples
+    --------
+    A count of 7 that 50 runs of ours spread about, and one that they do not reach:
+
+    >>> from dopplerlib.evaluation.claims import Claim
+    >>> claims = [Claim(name, "Sec 1", "a count", "random", "typical", "page", "cell", "test",
+    ...                 published=7.0) for name in ("near", "far")]
+    >>> evidence = {"near": Draws(np.arange(50.0)), "far": Draws(100 + np.arange(50.0))}
+    >>> [one.verdict for one in judge_all(claims, evidence)]
+    ['typical', 'atypical']
+    >>> judge(claims[0], Readings({"mean": evidence["near"], "sum": evidence["far"]})).verdict
+    'underdetermined'
     """
     claims = _checks.records("claims", claims, Claim)
     _checks.instance("evidence", evidence, dict)

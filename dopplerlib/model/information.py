@@ -124,6 +124,12 @@ def inverse_information(
     ------
     ValueError
         If the shapes do not fit, or `information` is not finite.
+
+    Examples
+    --------
+    >>> covariance, regular = inverse_information(np.diag([4.0, 0.0]))
+    >>> np.diagonal(covariance).tolist(), bool(regular)
+    ([0.25, inf], False)
     """
     information = _checks.finite("information", information, (None, None))
     n = information.shape[-1]

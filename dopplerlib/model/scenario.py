@@ -126,6 +126,12 @@ class Scenario:
             If the file cannot be read or is not TOML, a table or entry is missing or unknown, or an
             entry has a value that `Scenario` or `RadarArray` refuses. The message names the file
             and the entry.
+
+        Examples
+        --------
+        >>> from dopplerlib._data import data
+        >>> Scenario.from_toml(data("mittermaier2016", "scenario.toml")).samples
+        1001
         """
         with _toml.tables(path) as tables:
             return cls(**_fields(tables))
