@@ -14,7 +14,7 @@ def samples(x, fs, least=2):
     x = _checks.finite_complex("x", x, (None,))
     if x.shape[-1] < least:
         raise ValueError(f"x must have at least {least} samples, got {x.shape[-1]}")
-    return in_range(x), _checks.positive_number("fs", fs)
+    return in_range(x), _checks.moderate_number("fs", fs)
 
 
 def in_range(x):
@@ -22,6 +22,8 @@ def in_range(x):
 
     The frequency of a tone does not depend on its amplitude. Other windows stay as they are.
     """
+    if not x.size:
+        return x
     parts = np.ascontiguousarray(x).view(float)
     with np.errstate(over="ignore", under="ignore"):
         energy = np.einsum("...i,...i->...", parts, parts)

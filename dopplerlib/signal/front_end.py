@@ -62,7 +62,7 @@ def lowpass(x, fs, cutoff, taps, valid=None):
     from scipy import signal  # here: it takes long to load
 
     x, valid = known_samples("x", x, valid, (None,))
-    fs = _checks.positive_number("fs", fs)
+    fs = _checks.moderate_number("fs", fs)
     taps = _checks.whole_number("taps", taps)
     if taps % 2 == 0:
         raise ValueError(f"taps must be odd, or the delay is half a sample off, got {taps}")
@@ -129,7 +129,7 @@ def lowpass_decimate(x, fs, factor, taps=None, valid=None):
     ((200,), 10000.0, 0.001)
     """
     factor = _checks.whole_number("factor", factor)
-    fs = _checks.positive_number("fs", fs)
+    fs = _checks.moderate_number("fs", fs)
     if factor == 1:
         x, valid = known_samples("x", x, valid, (None,))
         return (x, fs, 0.0) if valid is None else (x, fs, 0.0, valid)

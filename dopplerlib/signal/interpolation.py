@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
-from ._bins import in_range, ratio, transform
+from ._bins import ratio, samples, transform
 
 _LEAST = 1e-300  # stands for an empty bin, which has no logarithm
 
@@ -75,7 +75,7 @@ def parabolic(
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for a window that tells none.
 
     Raises
     ------
@@ -116,7 +116,8 @@ def parabolic_three_highest(
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz, anywhere: a flat parabola has its vertex far away.
+        Frequencies in Hz, anywhere: a flat parabola has its vertex far away. NaN for a window that
+        tells none.
 
     Raises
     ------
@@ -160,7 +161,7 @@ def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Fl
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for a window that tells none.
 
     Raises
     ------
@@ -194,7 +195,7 @@ def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for a window that tells none.
 
     Raises
     ------
@@ -228,7 +229,7 @@ def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for a window that tells none.
 
     Raises
     ------
@@ -263,7 +264,7 @@ def quinn2(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for a window that tells none.
 
     Raises
     ------
@@ -302,7 +303,7 @@ def aboutanios_mulgrew(
     Returns
     -------
     ndarray, shape (...)
-        Frequencies in Hz.
+        Frequencies in Hz; NaN for a window that tells none.
 
     Raises
     ------
@@ -322,9 +323,9 @@ def aboutanios_mulgrew(
     123.0
     """
     iterations = _checks.whole_number("iterations", iterations)
+    x, fs = samples(x, fs)
     bins = transform(x, fs, band)
     k = bins.peak()
-    x = in_range(np.asarray(x, dtype=complex))
     t = np.arange(bins.n) / bins.n
     offset = np.zeros(k.shape)
     for _ in range(iterations):

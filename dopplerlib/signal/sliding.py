@@ -15,6 +15,7 @@ from .validity import LARGEST, known_samples
 
 _TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}
 _AT_ONCE = 2**14  # samples in the windows of one call of an estimator: a quarter of a megabyte
+_MOST = 2**40  # samples in a window
 _FINEST = 1e-6  # bins: so much the search for the peak leaves, see `_ml_kernel`
 
 
@@ -44,6 +45,11 @@ class DopplerRecord:
         Sampling rate in Hz.
     beside_constant : bool
         Whether the windows hold a constant that was estimated together with the tone.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described.
     """
 
     time: np.ndarray
@@ -54,6 +60,32 @@ class DopplerRecord:
     hop: int
     fs: float
     beside_constant: bool = False
+
+    def __post_init__(self):
+        frequency = _checks.measured("frequency", self.frequency, (None, None))
+        arrays = {
+            "frequency": frequency,
+            "amp2": _checks.finite("amp2", self.amp2),
+            "noise_variance": _checks.measured("noise_variance", self.noise_variance, ()),
+        }
+        for name, value in arrays.items():
+            if value.shape != frequency.shape:
+                raise ValueError(
+                    f"{name} must have shape {frequency.shape} of frequency, got {value.shape}"
+                )
+            if name != "frequency" and (value < 0).any():
+                raise ValueError(f"{name} must not be negative, got {np.nanmin(value):g}")
+        for name, value in (
+            *arrays.items(),
+            ("time", _checks.finite("time", self.time, frequency.shape[-2:-1])),
+            ("window", _checks.count("window", self.window, _MOST, 3)),
+            ("hop", _checks.whole_number("hop", self.hop)),
+            ("fs", _checks.moderate_number("fs", self.fs)),
+            ("beside_constant", _checks.one_boolean("beside_constant", self.beside_constant)),
+        ):
+            object.__setattr__(self, name, value)
+        if self.time.ndim != 1:
+            raise ValueError(f"time must have shape (K,), got {self.time.shape}")
 
     @property
     def snr(self) -> FloatArray:
@@ -102,6 +134,13 @@ class DopplerRecord:
         sigma_f : ndarray, shape (..., K, S)
             `frequency_std` in Hz. Where `z` is NaN it is `fs`: a filter wants a number there, and
             does not use it.
+
+        Examples
+        --------
+        >>> x = np.exp(0.5j * np.arange(200))
+        >>> doppler = sliding_doppler([x, 0 * x], 1e3, window=100, hop=100)
+        >>> doppler.measurements()[0].round(1).tolist()
+        [[79.6, nan], [79.6, nan]]
         """
         std = self.frequency_std
         known = std < self.fs
@@ -182,7 +221,7 @@ def sliding_doppler(
     largest = max(np.abs(part).max(initial=0.0) for part in (x.real, x.imag))
     if largest > LARGEST:
         raise ValueError(f"x must not exceed {LARGEST:g}, or its square is lost, got {largest:g}")
-    fs = _checks.positive_number("fs", fs)
+    fs = _checks.moderate_number("fs", fs)
     constant = estimator is ml_frequency_dc
     window = _checks.whole_number("window", window, least=4 if constant else 3)
     hop = _checks.whole_number("hop", hop)

@@ -115,9 +115,34 @@ def valid_samples(
 def known_samples(
     name: str, x: ArrayLike, valid: ArrayLike | None, shape: tuple[int | None, ...]
 ) -> tuple[ComplexArray, BoolArray | None]:
-    """Return checked samples with zeros where they are not valid, and the mask they came with.
+    """Return samples with zeros where they are not valid, and the mask.
 
-    The mask is None if all are to be taken for measurements, else of the shape of the samples.
+    Parameters
+    ----------
+    name : str
+        What the samples are called in an error.
+    x : array_like of complex, shape (...)
+        Samples; where `valid` is False they may be anything.
+    valid : array_like of bool, broadcast to (...), or None
+        Which of them are measurements; None for all.
+    shape : tuple of int or None
+        Last axes that `x` must have; None stands for any length.
+
+    Returns
+    -------
+    x : ndarray of complex, shape (...)
+    valid : ndarray of bool, shape (...), or None
+        None if None was given.
+
+    Raises
+    ------
+    ValueError
+        If a valid sample is not finite, or a shape does not fit.
+
+    Examples
+    --------
+    >>> known_samples("x", [1, np.nan], [True, False], (None,))[0].tolist()
+    [(1+0j), 0j]
     """
     if valid is None:
         return _checks.finite_complex(name, x, shape), None
