@@ -85,6 +85,24 @@ def test_every_module_of_the_library_was_seen():
     assert {"_checks", "kernels", "model", "derive", "figures", ROOT} <= seen <= set(MAY_IMPORT)
 
 
+def private_imports(library):
+    """Return "file:line: name" of every private name that is imported from another package."""
+    found = []
+    for path in sorted(library.rglob("*.py")):
+        parts = path.relative_to(library).with_suffix("").parts
+        for line, name in imports(path, [library.name, *parts[:-1]]):
+            top, package, *rest = [*name.split("."), ""]
+            foreign = top == library.name and package != parts[0] and not package.startswith("_")
+            if foreign and any(part.startswith("_") for part in rest):
+                found.append(f"{path.relative_to(library).as_posix()}:{line}: {name}")
+    return found
+
+
+def test_no_package_uses_what_is_private_to_another():
+    """What the house needs without checks stands in a public module, such as gaussian."""
+    assert private_imports(LIBRARY) == []
+
+
 @pytest.fixture
 def tree(tmp_path):
     """Return a function that writes modules, given by path and text, and returns their folder."""
@@ -161,4 +179,17 @@ def test_a_package_that_has_no_place_in_the_order_is_found(tree):
     assert violations(folder) == [
         "extras/a.py: has no place in the order",
         "helpers.py: has no place in the order",
+    ]
+
+
+def test_what_is_private_to_another_package_is_found(tree):
+    folder = tree(
+        {
+            "tracking/a.py": "from ..estimation.b import _c\nfrom ._d import e",
+            "tracking/f.py": "from .. import _checks\nfrom ..estimation._g import h",
+        }
+    )
+    assert private_imports(folder) == [
+        "tracking/a.py:1: dopplerlib.estimation.b._c",
+        "tracking/f.py:2: dopplerlib.estimation._g.h",
     ]
