@@ -1,11 +1,13 @@
 """The whole chain on the track of Table 2: from IQ samples to a position, every stage a switch."""
 
+import warnings
 from functools import cache
 
 import numpy as np
 
 from ... import _checks
 from ..._records import record
+from ...estimation.maximum_likelihood import IMPLAUSIBLE, ImplausibleStart
 from ...model.motion import constant_velocity
 from ...signal.frequency import ml_frequency
 from ...signal.impairments import correct_iq_imbalance, remove_mean
@@ -193,6 +195,12 @@ def track_iq(
         or `sigma_p` is not positive, `dc_until` is not within the record, or an argument is refused
         by `sliding_doppler`.
 
+    Warns
+    -----
+    ImplausibleStart
+        If chi-square of the likeliest start is more than a hundred times its degrees of freedom:
+        I and Q are exchanged, sensors are in another order, or no target is in the box.
+
     Notes
     -----
     The start sees windows side by side only, even if there are more that overlap, and gives all of
@@ -236,12 +244,26 @@ def track_iq(
         boxes = quarters(*boxes[0])
     apart = -(-n // step)
     states, costs, weights = hypotheses(z[:, :used], std[:, :used], iq.array, T, apart, boxes)
+    _warn_unless_plausible(costs, weights)
     each = [
         filters(z, s, early, iq.array, T, used, apart, sigma_p / np.sqrt(T), *starts)
         for z, s, early, *starts in zip(z, std, weights, states, costs, strict=True)
     ]
     fields = (np.array(field) for field in zip(*each, strict=True))
     return EndToEnd(time, known, z, std, used, *fields, sigma_p)
+
+
+def _warn_unless_plausible(costs, weights):
+    cost, degrees = np.fmin.reduce(costs, axis=1), np.isfinite(weights).sum(axis=(1, 2)) - 6
+    wrong = np.flatnonzero(cost > IMPLAUSIBLE * np.maximum(degrees, 1))
+    if len(wrong):
+        i = wrong[0]
+        warnings.warn(
+            f"no start explains the Doppler shifts of run {i}: chi-square {cost[i]:.0f} for "
+            f"{degrees[i]} degrees of freedom. Are I and Q exchanged, or sensors in another order?",
+            ImplausibleStart,
+            stacklevel=3,
+        )
 
 
 @cache

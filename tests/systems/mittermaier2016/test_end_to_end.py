@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.stats import chi2
 
 from dopplerlib import crlb, doppler_shift
+from dopplerlib.estimation.maximum_likelihood import ImplausibleStart
 from dopplerlib.signal.frequency import ml_frequency_dc
 from dopplerlib.signal.laws import overlap_correlation
 from dopplerlib.systems import mittermaier2016 as paper
@@ -330,3 +331,11 @@ def test_what_makes_no_sense_is_refused_by_name(iq, found):
         found.at(0.1)
     with pytest.raises(ValueError, match="iq must be a Baseband"):
         paper.track_iq(iq.x)
+
+
+@pytest.mark.parametrize("wrong", ["I and Q", "sensors"])
+def test_exchanged_branches_or_sensors_are_warned_of(wrong):
+    iq = paper.received(2, rng=np.random.default_rng(5), fs=2000.0, snr_db=30.0, factor=1)
+    x = iq.x.imag + 1j * iq.x.real if wrong == "I and Q" else iq.x[:, [3, 1, 2, 0, 4, 5]]
+    with pytest.warns(ImplausibleStart, match=r"of run 0: chi-square \d+ for \d+ degrees"):
+        paper.track_iq(replace(iq, x=x))
