@@ -1,7 +1,13 @@
 """What is written reads back the same; what is broken is refused with the reason."""
 
+import errno
+import io
 import json
+import pathlib
 import struct
+import sys
+import tarfile
+import wave
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta, timezone
 
@@ -398,3 +404,186 @@ def test_the_same_file_is_no_second_sensor(recording, tmp_path):
     for call in (lambda: read_sigmf([meta, str(meta)]), lambda: read_wav([wav, again], 24e9)):
         with pytest.raises(ValueError, match=r"paths must be different files, got .* twice"):
             call()
+
+
+# ------------------------------------------------------------------- what a recording has to be
+
+
+def test_what_is_not_finite_is_invalid_and_zero():
+    x = np.random.default_rng(2).standard_normal((2, 100)) + 0.5j
+    x = x + 1j * np.random.default_rng(3).standard_normal((2, 100))
+    bad = x.copy()
+    bad[0, 3], bad[1, [5, 6]] = np.nan, np.inf
+    one = Recording(bad, 1e3, 24e9)
+    assert np.argwhere(~one.valid).tolist() == [[0, 3], [1, 5], [1, 6]]
+    assert not one.x[~one.valid].any()
+    np.testing.assert_array_equal(one.x[one.valid], x[one.valid])
+    assert np.isnan(bad[0, 3])  # the array of the caller is his
+
+
+def test_a_stuck_sensor_is_invalid_and_keeps_its_values():
+    x = np.random.default_rng(4).standard_normal((2, 400)).view(complex)
+    x[1, 50:150] = x[1, 50]
+    one = Recording(x, 1e3, 24e9)
+    assert not one.valid[1, 50:150].any() and one.valid[0].all()
+    np.testing.assert_array_equal(one.x, x)
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"x": np.ones(5)}, r"x must have shape \(S, n\) with samples in it, got \(5,\)"),
+        ({"x": np.ones((2, 0))}, r"x must have shape \(S, n\) with samples in it, got \(2, 0\)"),
+        ({"x": "IQ"}, "x must be an array of numbers, got 'IQ'"),
+        ({"x": None}, "x must be an array of numbers, got None"),
+        ({"x": np.ma.masked_array([[1.0]], [[True]])}, "x must not be a masked array"),
+        ({"fs": 0.0}, "fs must be positive, got 0.0"),
+        ({"fs": -1}, "fs must be positive, got -1"),
+        ({"fs": np.nan}, "fs must be finite, got nan"),
+        ({"fs": None}, "fs must be an array of real numbers, got None"),
+        ({"carrier": 0}, "carrier must be positive, got 0"),
+        ({"carrier": [1.0, 2.0]}, "carrier must be one number"),
+        ({"start": "noon"}, "start must be a datetime with a time zone or None, got 'noon'"),
+        ({"start": NAIVE}, "start must be a datetime with a time zone or None, got"),
+        ({"start": datetime.max.replace(tzinfo=timezone(-timedelta(hours=9)))}, "the years 1 to 9"),
+        ({"valid": np.ones((3, 40))}, "valid must be an array of booleans"),
+        ({"valid": np.ones((3, 39), bool)}, r"valid must have shape \(3, 40\) of x, got \(3, 39\)"),
+        (
+            {"x": np.full((3, 40), np.nan), "valid": np.ones((3, 40), bool)},
+            r"x must be finite where valid, got \(?nan.* at index \(0, 0\)",
+        ),
+    ],
+)
+def test_a_recording_is_checked_when_it_is_made(recording, change, message):
+    with pytest.raises(ValueError, match=message):
+        replace(recording, **({"valid": None} | change))
+
+
+def test_what_is_valid_is_kept_by_sigmf(recording, tmp_path):
+    """Also if nothing but the user knows it; samples keep their values."""
+    valid = np.ones(recording.x.shape, dtype=bool)
+    valid[1, 3:9] = valid[2, 39] = valid[0, 0] = False
+    one = replace(recording, valid=valid)
+    meta = write_sigmf(tmp_path / "a", one)
+    assert json.loads(meta.read_text())["global"]["dopplerlib:invalid"] == [
+        [0, 0, 1],
+        [1, 3, 6],
+        [2, 39, 1],
+    ]
+    assert read_sigmf(meta) == one
+    part = read_sigmf(meta, first=5, count=10)
+    np.testing.assert_array_equal(part.valid, valid[:, 5:15])
+
+
+# ---------------------------------------------------------------------------- what others can open
+
+
+@pytest.mark.parametrize(
+    "samples, error", [("float32", 2**-24), ("int32", 2**-32), ("int16", 2**-16)]
+)
+def test_shorter_values_in_wav_are_rounded_and_no_more(recording, tmp_path, samples, error):
+    x = read_wav(write_wav(tmp_path / "a.wav", recording, samples), 24e9).x
+    assert np.abs((x - recording.x).view(float)).max() <= error
+
+
+def test_a_wav_file_of_16_bits_is_opened_by_python_s_own_reader(recording, tmp_path):
+    path = write_wav(tmp_path / "a.wav", recording, "int16")
+    with wave.open(str(path)) as file:
+        assert (file.getnchannels(), file.getsampwidth(), file.getframerate()) == (6, 2, 2000)
+        values = np.frombuffer(file.readframes(40), "<i2").reshape(40, 6)
+    np.testing.assert_array_equal(values[:, ::2].T, np.round(recording.x.real * 2**15))
+
+
+@pytest.mark.parametrize(
+    "samples, factor, message",
+    [
+        ("int16", 2, "between -1 and 1 - 2.-15 in both parts to be stored as int16, got 1.9"),
+        ("int32", 2, "between -1 and 1 - 2.-31 in both parts to be stored as int32, got 1.9"),
+        ("float32", 1e39, "at most 3.4e.38 in both parts to be stored as float32"),
+        ("int8", 1, "samples must be one of 'float64', 'float32', 'int32', 'int16', got 'int8'"),
+    ],
+)
+def test_values_that_do_not_fit_into_wav_are_refused(recording, tmp_path, samples, factor, message):
+    with pytest.raises(ValueError, match=message):
+        write_wav(tmp_path / "a.wav", with_x(recording, recording.x * factor), samples)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_wav_has_no_length_for_is_refused(recording, tmp_path, monkeypatch):
+    monkeypatch.setattr("dopplerlib.signal._wav._LARGEST", 100 + 39 * 48)
+    with pytest.raises(ValueError, match=r"at most 39 samples for 3 sensors .* 40: write_sigmf"):
+        write_wav(tmp_path / "a.wav", recording)
+
+
+def test_a_disk_that_is_full_is_named(recording, tmp_path, monkeypatch):
+    """Whoever writes: SciPy, NumPy or the library."""
+
+    class Full(io.RawIOBase):
+        def writable(self):
+            return True
+
+        def write(self, content):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(pathlib.Path, "open", lambda *args, **kwargs: Full())
+    monkeypatch.setattr("builtins.open", lambda *args, **kwargs: Full())
+    for write, name in ((write_wav, "a.wav"), (write_sigmf, "a.sigmf-data")):
+        with pytest.raises(OSError, match=f"No space left on device: .*{name}"):
+            write(tmp_path / name.removesuffix(".sigmf-data"), recording)
+    monkeypatch.undo()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_of_a_part_the_hash_is_not_compared(recording, tmp_path):
+    """It would take longer than the part; that samples are missing is noticed all the same."""
+    meta = write_sigmf(tmp_path / "a", recording)
+    data = tmp_path / "a.sigmf-data"
+    data.write_bytes(data.read_bytes()[::-1])
+    with pytest.raises(ValueError, match="hash"):
+        read_sigmf(meta)
+    assert read_sigmf(meta, first=1, count=5).x.shape == (3, 5)
+
+
+def test_an_archive_of_two_recordings_is_refused(recording, tmp_path):
+    for name in "ab":
+        write_sigmf(tmp_path / name, recording)
+    with tarfile.open(tmp_path / "two.sigmf", "w") as archive:
+        for path in sorted(tmp_path.glob("?.sigmf-*")):
+            archive.add(path, f"two/{path.name}")
+    with pytest.raises(
+        ValueError, match=r"two.sigmf is no sound .*: it must hold one rec.*, got 2"
+    ):
+        read_sigmf(tmp_path / "two.sigmf")
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04", bytes(10_240), b"x" * 600])
+@pytest.mark.parametrize("end", ["", ".gz", ".xz", ".zip"])
+def test_an_archive_that_is_none_is_refused(tmp_path, content, end):
+    (tmp_path / f"a.sigmf{end}").write_bytes(content)
+    with pytest.raises(ValueError, match=r"^a.sigmf\S* is no sound SigMF recording: ."):
+        read_sigmf(tmp_path / f"a.sigmf{end}")
+
+
+def test_the_carrier_of_the_metadata_counts(recording, tmp_path):
+    meta = write_sigmf(tmp_path / "a", recording)
+    assert read_sigmf(meta, recording.carrier) == recording
+    with pytest.raises(
+        ValueError, match=r"^carrier must be that of a.sigmf-meta, 24125000000.0, go"
+    ):
+        read_sigmf(meta, 10.5e9)
+    edit(meta, lambda c: c["captures"][0].pop("core:frequency"))
+    assert read_sigmf(meta, 10.5e9).carrier == 10.5e9
+    for carrier in (0, "10 GHz"):
+        with pytest.raises(ValueError, match=r"^carrier must be"):
+            read_sigmf(meta, carrier)
+
+
+@pytest.mark.parametrize("library, extra, call", [
+    ("soundfile", "wav", lambda r, d: read_wav(write_wav(d / "a.wav", r), 24e9)),
+    ("sigmf", "recordings", lambda r, d: write_sigmf(d / "a", r)),
+    ("sigmf", "recordings", lambda r, d: read_sigmf(d / "a")),
+])  # fmt: skip
+def test_a_library_that_is_missing_is_named(recording, tmp_path, monkeypatch, library, extra, call):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(ModuleNotFoundError, match=rf'pip install "dopplerlib\[{extra}\]"'):
+        call(recording, tmp_path)
