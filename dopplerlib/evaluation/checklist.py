@@ -98,7 +98,7 @@ def complex_step_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     >>> complex_step_jacobian([1, 0, 0, -1, 0, 0], RadarArray([[0, 0, 0]])).round(9)[0, 3:].tolist()
     [-160.0, 0.0, 0.0]
     """
-    x = _checks.finite("x", x, (6,))
+    x = _checks.moderate("x", x, (6,))
     check_clear_of_sensors("x", x, _checks.instance("array", array, RadarArray))
     x = x[..., None, None, :] + 1j * _STEP * np.eye(6)
     return shift_kernel(  # type: ignore[call-arg]  # four columns of the state and the sensors

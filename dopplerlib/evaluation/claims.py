@@ -88,6 +88,7 @@ def read_claims(path: FileSource) -> tuple[Claim, ...]:
 
 def check_claim(where: str, claim: Claim) -> None:
     """Raise a ValueError, with `where` in it, unless a claim is one that a file may hold."""
+    _checks.text("where", where)
     _checks.instance("claim", claim, Claim)
     for name in ("id", "where", "statement", "page", "cell", "test"):
         _checks.text(f"{name} of {where}", getattr(claim, name), least=1)

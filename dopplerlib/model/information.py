@@ -90,7 +90,7 @@ def fisher_information(
 
 
 def free_components(free: ArrayLike | None, n: int) -> BoolArray:
-    """Return which of `n` components are unknown: all if `free` is None, else its booleans."""
+    """Return which of `n` components, a number that is unchecked, are unknown: all if None."""
     if free is None:
         return np.ones(n, bool)
     free = _checks.booleans("free", free)
@@ -123,7 +123,7 @@ def inverse_information(
     Raises
     ------
     ValueError
-        If the shapes do not fit, or `information` is not finite.
+        If the shapes do not fit, or `information` is not finite or negative on its diagonal.
 
     Examples
     --------
@@ -140,7 +140,12 @@ def inverse_information(
         return covariance, np.ones(information.shape[:-2], bool)
     block = np.ix_(free, free)
     J = information[..., *block]
-    scale = np.sqrt(np.diagonal(J, axis1=-2, axis2=-1))
+    diagonal = np.diagonal(J, axis1=-2, axis2=-1)
+    if (diagonal < 0).any():
+        raise ValueError(
+            f"information must have no negative entry on its diagonal, got {diagonal.min()}"
+        )
+    scale = np.sqrt(diagonal)
     scale = np.where(scale > 0, scale, 1.0)
     scale = scale[..., :, None] * scale[..., None, :]
     eigenvalue, V = np.linalg.eigh(J / scale)
