@@ -13,6 +13,8 @@ from tools.alone import alone
 
 BUILT = Path(__file__).resolve().parents[1] / "book" / "_build"
 
+collect_ignore = ["typed.py"]  # for the type checker alone: it names files that are not there
+
 matplotlib.use("agg")
 
 # No deadline: the first call of a kernel compiles it.
