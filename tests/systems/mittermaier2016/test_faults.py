@@ -102,9 +102,12 @@ def test_nees_with_one_covariance_for_all_runs_is_that_of_the_library(world):
     np.testing.assert_array_equal(results["NEES at the end"], outside)
 
 
-def test_a_covariance_for_each_run_is_refused(world):
+def test_a_covariance_for_each_run_gives_what_one_for_all_gives(world):
     truth, z = world
     track = paper.linear_filter(z[:2])
+    F, Q = constant_velocity(SCENARIO.T, SCENARIO.sigma_p, "independent")
+    one = rejections(track, truth[:2], F, Q, group=2, lags=1)
     track = replace(track, P=np.repeat(track.P, 2, axis=0))
-    with pytest.raises(ValueError, match="leading axis 1"):
-        rejections(track, truth[:2], np.eye(6), np.eye(6))
+    each = rejections(track, truth[:2], F, Q, group=2, lags=1)
+    for name in TESTS:
+        np.testing.assert_array_equal(each[name], one[name])

@@ -247,5 +247,5 @@ def test_what_the_parts_refuse_is_refused():
         paper.figure6(0, rng=np.random.default_rng(1))
     with pytest.raises(ValueError, match="gate must be one of"):
         paper.figure6(1, rng=np.random.default_rng(1), gate="lower")
-    with pytest.raises(ValueError, match="P0 must be positive definite"):
-        paper.figure6(1, rng=np.random.default_rng(1), P0=np.zeros((6, 6)))
+    with pytest.raises(ValueError, match="P0 must be positive semidefinite"):
+        paper.figure6(1, rng=np.random.default_rng(1), P0=-np.eye(6))
