@@ -16,6 +16,7 @@ from ._wav_header import Plain, header
 
 _LARGEST = 2**32 - 1  # bytes that WAV can tell of
 _HEADER = 100  # bytes, at most
+_MOST = 2**60  # samples: of more there is no file
 _BLOCK = 2**20  # values that are read at a time
 _SUBTYPES = ("PCM_S8", "PCM_U8", "PCM_16", "PCM_24", "PCM_32", "FLOAT", "DOUBLE")
 
@@ -154,6 +155,8 @@ def _source(path, carrier, start):
     with _sound(path) as sound:
         if sound.subtype not in _SUBTYPES:
             raise ValueError(f"it must hold samples without loss, got {sound.subtype_info}")
+        if sound.frames > _MOST:  # FLAC to a pipe, in which libsndfile does not find its way
+            raise ValueError("its header must tell the number of samples, got none: convert it")
         fs, length, channels = float(sound.samplerate), sound.frames, sound.channels
 
     def blocks(first, count):

@@ -167,3 +167,15 @@ def test_real_numbers_in_sigmf_are_sensors_or_what_is_told(name):
     for layout in (None, "real"):
         x = read_sigmf(HERE / name, carrier, layout=layout).x
         np.testing.assert_allclose(x, hilbert(channels), rtol=0, atol=1e-14)
+
+
+def test_flac_that_does_not_tell_its_length_is_refused(tmp_path):
+    """As an encoder writes it to a pipe: 36 bits of the header are zero."""
+    content = bytearray((HERE / "sox.flac").read_bytes())
+    content[21] &= 0xF0
+    content[22:26] = bytes(4)
+    (tmp_path / "a.flac").write_bytes(content)
+    with pytest.raises(
+        ValueError, match=r"^a.flac is no sound FLAC file: its header must tell the"
+    ):
+        read_wav(tmp_path / "a.flac", CARRIER)
