@@ -27,6 +27,8 @@ _HOME = {
     "kf_predict": "estimation.linear_kalman",
     "kf_update": "estimation.linear_kalman",
     "ekf_update": "estimation.extended_update",
+    "ekf_records": "estimation.nonlinear_kalman",
+    "ukf": "estimation.nonlinear_kalman",
     "imm": "estimation.imm",
     "rts_smooth": "estimation.smoother",
     "steady_state_gain": "estimation.steady_state",

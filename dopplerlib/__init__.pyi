@@ -17,6 +17,8 @@ from .estimation.linear_kalman import kf_predict as kf_predict
 from .estimation.linear_kalman import kf_update as kf_update
 from .estimation.maximum_likelihood import Start as Start
 from .estimation.maximum_likelihood import ml_start as ml_start
+from .estimation.nonlinear_kalman import ekf_records as ekf_records
+from .estimation.nonlinear_kalman import ukf as ukf
 from .estimation.smoother import rts_smooth as rts_smooth
 from .estimation.steady_state import steady_state_gain as steady_state_gain
 from .estimation.steady_state import steady_state_lag as steady_state_lag
@@ -69,6 +71,7 @@ __all__ = [
     "doppler_shift",
     "effective_samples",
     "ekf",
+    "ekf_records",
     "ekf_update",
     "errors_by_direction",
     "fisher_information",
@@ -94,5 +97,6 @@ __all__ = [
     "sliding_doppler",
     "steady_state_gain",
     "steady_state_lag",
+    "ukf",
 ]
 __version__: str

@@ -262,15 +262,19 @@ def called(name, function, *arguments):
         raise ValueError(f"{name} must be a function, got {_short(function)}")
     try:
         return function(*arguments)
-    except TypeError:
+    except (TypeError, ValueError) as error:
         try:
             inspect.signature(function).bind(*arguments)
-        except TypeError as error:
+        except TypeError as misfit:
             raise ValueError(
-                f"{name} must take {len(arguments)} argument(s), got a function with {error}"
+                f"{name} must take {len(arguments)} argument(s), got a function with {misfit}"
             ) from None
         except ValueError:  # a function of C that does not tell
             pass
+        if error.__traceback__.tb_next is None:  # nothing of Python ran, as in int or dict
+            raise ValueError(
+                f"{name} must take the arrays it is called with, got {_short(function)}: {error}"
+            ) from None
         raise
 
 

@@ -16,6 +16,7 @@ from dopplerlib.estimation import (
     imm,
     linear_kalman,
     maximum_likelihood,
+    nonlinear_kalman,
     radial_velocity,
     smoother,
     steady_state,
@@ -48,6 +49,15 @@ CALLS = {
     extended_update.ekf_innovation: {"x": x, "P": P, "z": z[0], "R": R, "wrap": (0,)} | nonlinear,
     extended_update.ekf_update: {"x": x, "P": P, "z": z[0], "R": R, "wrap": (0,), "accept": True}
     | nonlinear,
+    nonlinear_kalman.ekf_records: {
+        "z": z, "f": lambda x: x @ F.T, "F": lambda x: F, "Q": Q, "R": R, "x0": x, "P0": P,
+        "wrap": (0,), "gate": "upper", "confidence": 0.9,
+    } | nonlinear,
+    nonlinear_kalman.ukf: {
+        "z": z, "f": lambda x: x @ F.T, "Q": Q, "h": nonlinear["h"], "R": R, "x0": x, "P0": P,
+        "points": "unscented", "alpha": 0.5, "beta": 2.0, "kappa": 0.5,
+        "wrap": (0,), "gate": "upper", "confidence": 0.9,
+    },
     imm.imm: {
         "z": z, "F": [F, F], "Q": [Q, 4 * Q], "H": H, "R": R, "x0": x, "P0": P,
         "transition": [[0.9, 0.1], [0.2, 0.8]], "mode0": [0.5, 0.5],
@@ -93,7 +103,7 @@ CALLS = {
 COVARIANCES = ("P", "P0", "P1", "P2", "Q", "R", "R1", "R2")
 ITERABLES = ("wrap", "scans", "keep", "box")
 BOOLEANS = ("accept", "in_plane")
-NOT_NUMBERS = ("array", "start", "manager", "h", "gate", *ITERABLES, *BOOLEANS)
+NOT_NUMBERS = ("points", "array", "start", "manager", "h", "gate", *ITERABLES, *BOOLEANS)
 
 
 def call(function, **changed):
@@ -111,6 +121,10 @@ def results(value):
     return [] if value is None else [np.asarray(value)]
 
 
+# Modules of functions for the house, whose callers check.
+UNCHECKED = ("gaussian", "recursion", "sigma_points")
+
+
 def public_functions():
     """Return every function of estimation and tracking whose module and own name are public."""
     found = []
@@ -118,7 +132,7 @@ def public_functions():
         folder = import_module(f"dopplerlib.{package}")
         for module in iter_modules(folder.__path__, f"{folder.__name__}."):
             name = module.name.rpartition(".")[2]
-            if not name.startswith("_") and name != "gaussian":
+            if not name.startswith("_") and name not in UNCHECKED:
                 members = vars(import_module(module.name)).values()
                 found += [
                     value

@@ -5,7 +5,13 @@ import datetime
 import numpy as np
 import pytest
 
-from dopplerlib.estimation import extended_update, imm, linear_kalman, steady_state
+from dopplerlib.estimation import (
+    extended_update,
+    imm,
+    linear_kalman,
+    nonlinear_kalman,
+    steady_state,
+)
 from dopplerlib.tracking import multi_target, pda
 from tests.estimates import (
     BOOLEANS,
@@ -38,8 +44,9 @@ NUMBERS = [
 
 
 def test_every_public_function_is_tried():
-    """`linearized` is what `ekf_update` is made of, and tried through it."""
-    assert set(public_functions()) == set(EVERY) | {extended_update.linearized}
+    """What `ekf_update` is made of is tried through it."""
+    inside = {extended_update.linearized, extended_update.wrapped}
+    assert set(public_functions()) == set(EVERY) | inside
 
 
 @pytest.mark.parametrize("function", EVERY, ids=label)
@@ -235,6 +242,8 @@ def test_two_sensors_that_say_the_same_and_hardly_err_are_refused_by_name():
         linear_kalman.kf_update: changed | {"z": [1.0, 1.0]},
         linear_kalman.kf: changed | {"z": [[1.0, 1.0]] * 2},
         imm.imm: changed | {"z": [[1.0, 1.0]] * 2},
+        nonlinear_kalman.ekf_records: {"z": [[1.0, 1.0]] * 2, "R": R} | of_state(same),
+        nonlinear_kalman.ukf: {"z": [[1.0, 1.0]] * 2, "R": R, "h": lambda x: x @ same},
         extended_update.ekf_innovation: {"z": [1.0, 1.0], "R": R} | of_state(same),
         extended_update.ekf_update: {"z": [1.0, 1.0], "R": R} | of_state(same),
         pda.pda_update: changed | {"z": [[1.0, 1.0]]},

@@ -5,7 +5,10 @@ from . import gaussian as gaussian
 from . import imm as imm
 from . import linear_kalman as linear_kalman
 from . import maximum_likelihood as maximum_likelihood
+from . import nonlinear_kalman as nonlinear_kalman
 from . import radial_velocity as radial_velocity
+from . import recursion as recursion
+from . import sigma_points as sigma_points
 from . import smoother as smoother
 from . import steady_state as steady_state
 from . import track as track

@@ -167,10 +167,15 @@ def linearized(
     predicted = _checks.finite("h(x)", _checks.called("h", h, x), (m,))
     J = _checks.finite("H(x)", _checks.called("H", H, x), (m, x.shape[-1]))
     _checks.check_leading(**{"x": (x, 1), "z": (z, 1), "h(x)": (predicted, 1), "H(x)": (J, 2)})
-    innovation = z - predicted
+    return wrapped(z - predicted, wrap), J
+
+
+def wrapped(difference: FloatArray, wrap: Iterable[int]) -> FloatArray:
+    """Return unchecked differences with those of angles, at places `wrap`, in [-pi, pi)."""
+    difference = difference.copy()
     for i in wrap:
-        innovation[..., i] = (innovation[..., i] + np.pi) % (2 * np.pi) - np.pi
-    return innovation, J
+        difference[..., i] = (difference[..., i] + np.pi) % (2 * np.pi) - np.pi
+    return difference
 
 
 def _checked(x, P, z, R):

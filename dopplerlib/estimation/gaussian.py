@@ -44,18 +44,20 @@ def square_root(P: FloatArray) -> FloatArray:
 
 
 @_checks.quiet
-def squared(A: FloatArray) -> FloatArray:
-    """Return A A', symmetric.
+def squared(A: FloatArray, noise: FloatArray | float = 0.0) -> FloatArray:
+    """Return A A' and noise, symmetric.
 
     Parameters
     ----------
     A : ndarray, shape (..., n, k)
+    noise : ndarray, shape (..., n, n), optional
+        Covariances that are added.
 
     Returns
     -------
     ndarray, shape (..., n, n)
     """
-    return _symmetric(_squared(A))
+    return _symmetric(_squared(A) + noise)
 
 
 @_checks.quiet
@@ -78,7 +80,7 @@ def predict(
     x : ndarray, shape (..., n)
     P : ndarray, shape (..., n, n)
     """
-    return _times(F, x), _symmetric(_squared(F @ square_root(P)) + Q)
+    return _times(F, x), squared(F @ square_root(P), Q)
 
 
 @_checks.quiet
@@ -137,21 +139,39 @@ def gain(
     Bar-Shalom, Li, Kirubarajan (2001), Sec 5.2.3; the Joseph form is due to Bucy and Joseph (1968).
     """
     L = square_root(P)
-    HL = H @ L
-    S = used = _symmetric(_squared(HL) + R)
-    all_there = np.all(there)
-    if not all_there:
-        H, HL, R, used = _present(there, H, HL, R, S)
-    _cholesky(used)
-    try:
-        K = np.linalg.solve(used, HL @ L.mT).mT
-    except np.linalg.LinAlgError:  # one factorization may find what the other does not
-        raise _singular(used) from None
-    A = np.eye(P.shape[-1]) - K @ H
-    after = _symmetric(_squared(A @ L) + _squared(K @ square_root(R)))
-    if not all_there:
-        after = np.where(there.any(axis=-1)[..., None, None], after, P)
-    return K, after, S
+    K, S, R = _weighed(L, H @ L, R, there)
+    return K, _joseph(P, (np.eye(P.shape[-1]) - K @ H) @ L, K, R, there), S
+
+
+@_checks.quiet
+def gain_of_root(
+    P: FloatArray, L: FloatArray, HL: FloatArray, R: FloatArray, there: BoolArray | bool = True
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what `gain` does, from H L in place of H: all that sigma points tell about H.
+
+    Parameters
+    ----------
+    P, R, there
+        See `gain`.
+    L : ndarray, shape (..., n, n)
+        Square root of `P`, see `square_root`.
+    HL : ndarray, shape (..., m, n)
+        Measurement matrix times `L`.
+
+    Returns
+    -------
+    K, P, S
+        See `gain`.
+
+    Raises
+    ------
+    ValueError
+        If S is singular to rounding.
+    """
+    K, S, R = _weighed(L, HL, R, there)
+    if not np.all(there):
+        HL = np.where(there[..., None], HL, 0.0)
+    return K, _joseph(P, L - K @ HL, K, R, there), S
 
 
 @_checks.quiet
@@ -341,7 +361,7 @@ def smooth(
     """
     L = square_root(P)
     FL = F @ L
-    predicted = _symmetric(_squared(FL) + Q)
+    predicted = squared(FL, Q)
     G = solve(predicted, FL @ L.mT).mT
     x = x + _times(G, x_next - _times(F, x))
     A = np.eye(P.shape[-1]) - G @ F
@@ -395,13 +415,30 @@ def _form(v, S):
     return form, L, there
 
 
-def _present(there, H, HL, R, S):
-    """Return matrices with which what is missing measures nothing, with noise of variance 1."""
-    both = there[..., :, None] & there[..., None, :]
-    eye = np.eye(there.shape[-1])
-    row = there[..., None]
-    used = np.where(both, S, eye)
-    return np.where(row, H, 0.0), np.where(row, HL, 0.0), np.where(both, R, eye), used
+def _weighed(L, HL, R, there):
+    """Return gain, S, and R in which the noise of what is missing has variance 1.
+
+    What is missing measures nothing: its rows of H L are zero, and so are its columns of the gain.
+    """
+    S = used = squared(HL, R)
+    if not np.all(there):
+        both = there[..., :, None] & there[..., None, :]
+        eye = np.eye(there.shape[-1])
+        used, R = np.where(both, S, eye), np.where(both, R, eye)
+        HL = np.where(there[..., None], HL, 0.0)
+    _cholesky(used)
+    try:
+        return np.linalg.solve(used, HL @ L.mT).mT, S, R
+    except np.linalg.LinAlgError:  # one factorization may find what the other does not
+        raise _singular(used) from None
+
+
+def _joseph(P, AL, K, R, there):
+    """Return the covariance after an update with (I - K H) L, or P where nothing is there."""
+    after = _symmetric(_squared(AL) + _squared(K @ square_root(R)))
+    if not np.all(there):
+        after = np.where(there.any(axis=-1)[..., None, None], after, P)
+    return after
 
 
 def _cholesky(S):

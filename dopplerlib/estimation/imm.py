@@ -5,7 +5,7 @@ import numpy as np
 from .. import _checks
 from .._records import record
 from .._typing import ArrayLike
-from . import gaussian
+from . import gaussian, recursion
 
 
 @record
@@ -114,12 +114,13 @@ def imm(
     P = np.repeat(P0[..., None, :, :], M, axis=-3)
     with np.errstate(divide="ignore"):  # the logarithm of 0 is what it should be
         log_mode, log_transition = np.log(np.broadcast_to(mode0, (*batch, M))), np.log(transition)
-    steps = []
-    for k in range(samples):
-        x, P, log_mode = _step(x, P, log_mode, z[..., k, :], F[k], Q[k], H, R, log_transition)
+
+    def step(k, state):
+        x, P, log_mode = _step(*state, z[..., k, :], F[k], Q[k], H, R, log_transition)
         mode = _shares(log_mode, axis=-1)
-        steps.append((*gaussian.mixture(x, P, mode), mode))
-    track = ImmTrack(*(np.stack(s, axis=len(batch)) for s in zip(*steps, strict=True)))
+        return (x, P, log_mode), (*gaussian.mixture(x, P, mode), mode)
+
+    track = ImmTrack(*recursion.scan(step, (x, P, log_mode), range(samples), len(batch)))
     _checks.estimates("F, Q, H, R, x0, P0, z", track.x, track.P, track.mode)
     return track
 

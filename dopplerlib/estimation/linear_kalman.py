@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
-from . import gaussian
+from . import gaussian, recursion
 from .track import Track
 
 
@@ -196,21 +196,17 @@ def kf(
     there = ~np.isnan(z)
     first = there.reshape(-1, samples, m)[0]
     shared = P0.ndim == 2 and bool((there == first).all())
-    seen = first if shared else there
     x = _checks.each_run("x0", x0, batch, (n,))
-    P = P0 if shared else _checks.each_run("P0", P0, batch, (n, n))
-    steps = []
-    for k in range(samples):
-        x, P = gaussian.predict(x, P, F[k], Q[k])
+    alone = (1,) * len(batch)
+    P = P0.reshape(*alone, n, n) if shared else _checks.each_run("P0", P0, batch, (n, n))
+    seen = first.reshape(*alone, samples, m) if shared else there
+
+    def predict(k, x, P):
+        return gaussian.predict(x, P, F[k], Q[k])
+
+    def correct(k, x, P):
         innovation = gaussian.innovation(x, z[..., k, :], H)
-        gain, P, S = gaussian.gain(P, H, R, seen[..., k, :])
-        x = gaussian.moved(x, gain, innovation)
-        steps.append((x, P, innovation, S))
-    x, P, innovation, S = zip(*steps, strict=True)
-    x, innovation = (np.stack(values, axis=len(batch)) for values in (x, innovation))
-    P, S = (np.stack(values, axis=0 if shared else len(batch)) for values in (P, S))
-    _checks.estimates("F, Q, H, R, x0, P0, z", x, P, S, np.where(there, innovation, 0.0))
-    nis = gaussian.quadratic_form(innovation, S)
-    _checks.estimates("z", np.where(there.any(axis=-1), nis, 0.0))
-    P, S = (np.broadcast_to(v, (*batch, *v.shape[-3:])) for v in (P, S))
-    return Track(x, P, innovation, S, nis, there.any(axis=-1))
+        return innovation, *gaussian.gain(P, H, R, seen[..., k, :])
+
+    track = recursion.filter_records(x, P, predict, correct, range(samples), len(batch))
+    return recursion.finite("F, Q, H, R, x0, P0, z", track)

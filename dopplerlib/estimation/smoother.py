@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
-from . import gaussian
+from . import gaussian, recursion
 
 
 @_checks.quiet
@@ -60,10 +60,16 @@ def rts_smooth(
     Q = _checks.covariance("Q", Q, n, definite=False)
     Q = _checks.each_sample("Q", Q, K, (n, n))
     batch = np.broadcast_shapes(x.shape[:-2], P.shape[:-3])
-    x, P = np.broadcast_to(x, (*batch, K, n)).copy(), P.copy()
-    for k in range(K - 2, -1, -1):
-        x[..., k, :], P[..., k, :, :] = gaussian.smooth(
-            x[..., k, :], P[..., k, :, :], F[k + 1], Q[k + 1], x[..., k + 1, :], P[..., k + 1, :, :]
+    x, shape = np.broadcast_to(x, (*batch, K, n)), P.shape
+    P = P.reshape((1,) * (len(batch) + 3 - P.ndim) + shape)  # runs may share it
+
+    def step(k, later):
+        earlier = gaussian.smooth(
+            x[..., k, :], P[..., k, :, :], F[k + 1], Q[k + 1], later[0], later[1]
         )
+        return earlier, earlier
+
+    last = x[..., -1, :], P[..., -1, :, :]
+    x, P = recursion.scan(step, last, range(K - 2, -1, -1), len(batch), first=last)
     _checks.estimates("x, P, F, Q", x, P)
-    return x, P
+    return np.flip(x, -2), np.flip(P, -3).reshape(shape)

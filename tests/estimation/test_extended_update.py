@@ -144,6 +144,10 @@ def test_functions_that_do_not_fit_are_refused_and_their_own_errors_come_through
     with pytest.raises(ValueError, match=r"leading axes that broadcast, got .* \(7,\) of H\(x\)"):
         ekf_update(**arguments | {"H": lambda x: np.stack([LINEAR] * 7)})
 
+    for kind in (int, dict):
+        with pytest.raises(ValueError, match=r"^h must take the arrays .*, got <class '"):
+            ekf_update(**arguments | {"h": kind})
+
     def broken(x):
         return x + "text"
 

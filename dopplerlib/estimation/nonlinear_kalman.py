@@ -1,0 +1,265 @@
+"""Kalman filters for any motion and any measurement: extended, unscented and cubature."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Literal
+
+import numpy as np
+
+from .. import _checks
+from .._typing import ArrayLike
+from . import gaussian, recursion, sigma_points
+from .extended_kalman import gate_bounds
+from .extended_update import linearized, wrapped
+from .track import Track
+
+Function = Callable[..., Any] | Sequence[Callable[..., Any]]  # for all samples, or each
+
+
+@_checks.quiet
+def ekf_records(
+    z: ArrayLike,
+    f: Function,
+    F: Function,
+    Q: ArrayLike,
+    h: Function,
+    H: Function,
+    R: ArrayLike,
+    x0: ArrayLike,
+    P0: ArrayLike,
+    *,
+    wrap: Iterable[int] = (),
+    gate: Literal["upper", "two-sided"] | None = None,
+    confidence: float = 0.95,
+) -> Track:
+    """Filter whole records with an extended Kalman filter, for any motion and any measurement.
+
+    Every cycle predicts, then updates, like `kf`. `ekf` is the same for Doppler shifts, compiled.
+
+    Parameters
+    ----------
+    z : array_like, shape (..., K, m)
+        Measurements; NaN says that a component is missing at this sample. The others update alone.
+    f : callable or sequence of callable
+        Motion over one interval: takes states (..., n), returns (..., n). At uneven times one for
+        each sample, that of the step which leads to it.
+    F : callable or sequence of callable
+        Its Jacobian: takes states (..., n), returns (..., n, n).
+    Q : array_like, shape (n, n) or (K, n, n)
+        Covariance of the process noise.
+    h : callable or sequence of callable
+        Measurement function: takes states (..., n), returns (..., m).
+    H : callable or sequence of callable
+        Its Jacobian: takes states (..., n), returns (..., m, n).
+    R : array_like, shape (m, m) or (K, m, m)
+        Covariance of the measurement noise.
+    x0 : array_like, shape (..., n)
+        State one step before the first measurement; leading axes broadcast against those of `z`.
+    P0 : array_like, shape (..., n, n)
+        Its covariance; it may be singular: a component can be known exactly.
+    wrap : iterable of int
+        Components of the measurement that are angles in rad: their innovations are brought into
+        [-pi, pi).
+    gate : {None, "upper", "two-sided"}
+        Which measurements are used, see `ekf`. A refused one leaves the state predicted.
+    confidence : float
+        Probability of the gate.
+
+    Returns
+    -------
+    Track
+        Leading axes are those of `z`. The last x and P are `x0` and `P0` of what is measured next:
+        a record may come sample by sample.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite (but for a NaN in `z`), also of what functions
+        return and of what comes out, a matrix is not a covariance (`P0` and `Q` may be singular),
+        `R` is so small that the covariance of an innovation is singular to rounding, `wrap` names a
+        component that the measurement does not have, or `gate` or `confidence` is not as described.
+
+    Notes
+    -----
+    Bar-Shalom, Li, Kirubarajan (2001), Sec 10.3; covariances are sums of squares.
+
+    Examples
+    --------
+    A constant of which the square is measured, from a start that is off by one:
+
+    >>> track = ekf_records(
+    ...     [[4.1], [3.9], [4.0]], lambda x: x, lambda x: np.eye(1), [[0.0]],
+    ...     lambda x: x**2, lambda x: 2 * x[..., None], [[0.01]], [3.0], [[1.0]],
+    ... )
+    >>> track.x[:, 0].round(2).tolist()
+    [2.18, 2.11, 2.09]
+    """
+    z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, confidence)
+    batch, (K, m), n = z.shape[:-2], z.shape[-2:], x.shape[-1]
+    f, F = _each("f", f, K, (batch, (n,))), _each("F", F, K, (batch, (n, n)))
+    h, H = _each("h", h, K, (batch, (m,))), _each("H", H, K, (batch, (m, n)))
+
+    def predict(k, x, P):
+        _, P = gaussian.predict(x, P, F[k](x), Q[k])
+        return f[k](x), P
+
+    def correct(k, x, P):
+        innovation, J = linearized(x, z[..., k, :], h[k], H[k], wrap)
+        return innovation, *gaussian.gain(P, J, R[k], ~np.isnan(innovation))
+
+    track = recursion.filter_records(x, P, predict, correct, range(K), len(batch), bounds)
+    return recursion.finite("z, f, F, Q, h, H, R, x0, P0", track)
+
+
+@_checks.quiet
+def ukf(
+    z: ArrayLike,
+    f: Function,
+    Q: ArrayLike,
+    h: Function,
+    R: ArrayLike,
+    x0: ArrayLike,
+    P0: ArrayLike,
+    *,
+    points: Literal["cubature", "unscented"] = "cubature",
+    alpha: float = 1e-3,
+    beta: float = 2.0,
+    kappa: float = 0.0,
+    wrap: Iterable[int] = (),
+    gate: Literal["upper", "two-sided"] | None = None,
+    confidence: float = 0.95,
+) -> Track:
+    """Filter whole records with an unscented or cubature Kalman filter, which needs no Jacobian.
+
+    Every cycle predicts, then updates, each with sigma points drawn anew.
+
+    Parameters
+    ----------
+    z : array_like, shape (..., K, m)
+        Measurements; NaN says that a component is missing at this sample. The others update alone.
+    f : callable or sequence of callable
+        Motion over one interval: takes states (..., n), returns (..., n). The points of all runs
+        come at once, along the axis before the last. At uneven times one for each sample.
+    Q : array_like, shape (n, n) or (K, n, n)
+        Covariance of the process noise.
+    h : callable or sequence of callable
+        Measurement function: takes states (..., n), returns (..., m).
+    R : array_like, shape (m, m) or (K, m, m)
+        Covariance of the measurement noise.
+    x0 : array_like, shape (..., n)
+        State one step before the first measurement; leading axes broadcast against those of `z`.
+    P0 : array_like, shape (..., n, n)
+        Its covariance; it may be singular: a component can be known exactly.
+    points : {"cubature", "unscented"}
+        Sigma points: 2 n of equal weight, or the scaled ones with the mean as one more.
+    alpha : float
+        Spread: "unscented" points stand alpha sqrt(n + kappa) standard deviations away.
+    beta : float
+        Weight of the middle point in covariances; 2 is best for Gaussians.
+    kappa : float
+        Second spread, usually 0 or 3 - n.
+    wrap : iterable of int
+        Components of the measurement that are angles in rad.
+    gate : {None, "upper", "two-sided"}
+        Which measurements are used, see `ekf`. A refused one leaves the state predicted.
+    confidence : float
+        Probability of the gate.
+
+    Returns
+    -------
+    Track
+
+    Raises
+    ------
+    ValueError
+        As `ekf_records`; if `alpha` is not positive, `kappa` not above -n, or `beta` is so small
+        that these weights could give a negative variance.
+
+    Notes
+    -----
+    Julier and Uhlmann (2004); Wan and van der Merwe (2000) for alpha, beta, kappa; Arasaratnam and
+    Haykin (2009) for cubature. The points are taken as a linear regression, z = H x + e, of which
+    they give H L with a square root L of P, and the covariance of e, which adds to R (Lefebvre,
+    Bruyninckx, De Schutter 2002; Särkkä 2013, Sec 5.5). The gain is the classical one, but the
+    covariance is a sum of squares, also where the middle point has a negative weight.
+
+    Angles are averaged as differences from that of the middle, which is their mean on the circle as
+    long as they spread less than half of it. Functions are called at the middle with "cubature",
+    too.
+
+    Examples
+    --------
+    A constant of which the square is measured, from a start that is off by one:
+
+    >>> track = ukf(
+    ...     [[4.1], [3.9], [4.0]], lambda x: x, [[0.0]],
+    ...     lambda x: x**2, [[0.01]], [3.0], [[1.0]], points="unscented", kappa=2.0,
+    ... )
+    >>> track.x[:, 0].round(2).tolist()
+    [2.07, 1.97, 1.99]
+    """
+    z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, confidence)
+    batch, (K, m), n = z.shape[:-2], z.shape[-2:], x.shape[-1]
+    _checks.one_of("points", points, ("cubature", "unscented"))
+    scale = sigma_points.scaling(n, alpha, beta, kappa)
+    if points == "cubature":
+        scale = sigma_points.scaling(n)
+    many = (*batch, 2 * n + 1)
+    f, h = _each("f", f, K, (many, (n,))), _each("h", h, K, (many, (m,)))
+
+    def predict(k, x, P):
+        mean, FL, rest = sigma_points.regression(f[k], x, gaussian.square_root(P), scale)
+        return mean, gaussian.squared(np.concatenate([FL, rest], axis=-1), Q[k])
+
+    def correct(k, x, P):
+        L = gaussian.square_root(P)
+        mean, HL, rest = sigma_points.regression(h[k], x, L, scale, wrap)
+        innovation = wrapped(z[..., k, :] - mean, wrap)
+        noise = R[k] + gaussian.squared(rest)
+        return innovation, *gaussian.gain_of_root(P, L, HL, noise, ~np.isnan(innovation))
+
+    track = recursion.filter_records(x, P, predict, correct, range(K), len(batch), bounds)
+    return recursion.finite("z, f, Q, h, R, x0, P0", track)
+
+
+def _arguments(z, Q, R, x0, P0, wrap, gate, confidence):
+    """Return what both filters are given, checked."""
+    x0 = _checks.finite("x0", x0, (None,))
+    n = x0.shape[-1]
+    P0 = _checks.covariance("P0", P0, n, definite=False)
+    z = _checks.measured("z", z, (None, None))
+    if not z.size or not n:
+        name, value = ("z", z) if n else ("x0", x0)
+        raise ValueError(f"{name} must not be empty, got shape {value.shape}")
+    batch, (K, m) = z.shape[:-2], z.shape[-2:]
+    Q = _checks.each_sample("Q", _checks.covariance("Q", Q, n, definite=False), K, (n, n))
+    R = _checks.each_sample("R", _checks.covariance("R", R, m), K, (m, m))
+    x0 = _checks.each_run("x0", x0, batch, (n,))
+    P0 = _checks.each_run("P0", P0, batch, (n, n))
+    bounds = gate_bounds(gate, m, confidence)
+    wrap = _checks.components("wrap", wrap, m)
+    return z, Q, R, x0, P0, wrap, bounds if gate else None
+
+
+def _each(name, functions, samples, form):
+    """Return for each sample a function whose values are checked: finite, and of `form`.
+
+    `form` is the shape of the runs and that of one value. The functions get a copy: what they write
+    to is no estimate.
+    """
+    if not isinstance(functions, (list, tuple)):
+        functions = (_checks.function(name, functions),) * samples
+    if len(functions) != samples or not all(map(callable, functions)):
+        raise ValueError(
+            f"{name} must be a function, or {samples} of them, one for each sample, got "
+            f"{len(functions)} objects"
+        )
+    runs, shape = form
+
+    def checked(function):
+        def value(x):
+            result = _checks.finite(f"{name}(x)", _checks.called(name, function, x.copy()), shape)
+            return _checks.each_run(f"{name}(x)", result, runs, shape)
+
+        return value
+
+    return tuple(map(checked, functions))

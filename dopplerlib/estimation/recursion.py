@@ -1,0 +1,150 @@
+"""The recursion of every filter: one cycle, and the loop over the samples of a record; unchecked.
+
+A filter is a motion model, a measurement model and a rule that linearizes them. It hands two
+functions to `cycle`: one that predicts and one that returns innovation and gain. A cycle takes a
+state and returns the next one, so that a filter which runs sample by sample is the same code as one
+that runs over a record.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .. import _checks
+from .._typing import FloatArray
+from . import gaussian
+from .track import Track
+
+Predict = Callable[[int, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
+Correct = Callable[[int, FloatArray, FloatArray], tuple[FloatArray, ...]]
+Bounds = tuple[FloatArray, FloatArray]
+
+
+def scan(
+    step: Callable[[int, Any], tuple[Any, tuple[Any, ...]]],
+    state: Any,
+    times: range,
+    axis: int = 0,
+    first: tuple[Any, ...] | None = None,
+) -> tuple[FloatArray, ...]:
+    """Return what a step returns along a record: the loop over the samples.
+
+    Parameters
+    ----------
+    step : callable
+        Takes the number of the sample and the state before it; returns the state after it and a
+        tuple of outputs.
+    state
+        State before the first step.
+    times : range
+        Numbers of the samples, also backward.
+    axis : int
+        Axis of time in the outputs.
+    first : tuple, optional
+        Outputs that stand before those of the first step.
+
+    Returns
+    -------
+    tuple of ndarray
+        Outputs in the order of the steps, stacked.
+    """
+    outputs = [] if first is None else [first]
+    for k in times:
+        state, output = step(k, state)
+        outputs.append(output)
+    return tuple(np.stack(values, axis=axis) for values in zip(*outputs, strict=True))
+
+
+def cycle(
+    k: int,
+    state: tuple[FloatArray, FloatArray],
+    predict: Predict,
+    correct: Correct,
+    bounds: Bounds | None = None,
+) -> tuple[tuple[FloatArray, FloatArray], tuple[Any, ...]]:
+    """Return state and outputs after one cycle: predict, look at the gate, update.
+
+    Parameters
+    ----------
+    k : int
+        Number of the sample.
+    state : tuple
+        Estimates x (..., n) and their covariances P (..., n, n) at the sample before.
+    predict : callable
+        Takes k, x and P; returns x and P at the sample k.
+    correct : callable
+        Takes k and the predicted x and P; returns the innovation (..., m), NaN where a measurement
+        is missing, and what `gaussian.gain` returns.
+    bounds : tuple of ndarray, shape (m + 1,), optional
+        Gate on NIS for 0, 1, ... components that are measured, see `gate_bounds`.
+
+    Returns
+    -------
+    state : tuple
+        Estimates and covariances after the update.
+    outputs : tuple
+        x, P, innovation, S, NIS and whether the state was updated; without a gate the latter two
+        are left to `filter_records`, which computes them for the whole record at once.
+    """
+    x, P = predict(k, *state)
+    innovation, K, P_after, S = correct(k, x, P)
+    x_after = gaussian.moved(x, K, innovation)
+    if bounds is None:
+        return (x_after, P_after), (x_after, P_after, innovation, S)
+    nis, count = gaussian.quadratic_form(innovation, S), _count(innovation)
+    updated = (count > 0) & (bounds[0][count] <= nis) & (nis <= bounds[1][count])
+    x = np.where(updated[..., None], x_after, x)
+    P = np.where(updated[..., None, None], P_after, P)
+    return (x, P), (x, P, innovation, S, nis, updated)
+
+
+def filter_records(
+    x: FloatArray,
+    P: FloatArray,
+    predict: Predict,
+    correct: Correct,
+    times: range,
+    axis: int,
+    bounds: Bounds | None = None,
+) -> Track:
+    """Filter whole records, many runs at once.
+
+    Parameters
+    ----------
+    x : ndarray, shape (..., n)
+        Estimates one step before the first sample.
+    P : ndarray, shape (..., n, n)
+        Their covariances; leading axes of length one if the runs share them.
+    predict, correct, bounds
+        See `cycle`.
+    times, axis
+        See `scan`.
+
+    Returns
+    -------
+    Track
+    """
+    x, P, innovation, S, *gated = scan(
+        lambda k, state: cycle(k, state, predict, correct, bounds), (x, P), times, axis
+    )
+    if not gated:
+        gated = [gaussian.quadratic_form(innovation, S), _count(innovation) > 0]
+    runs = x.shape[:-1]
+    P, S = (np.broadcast_to(v, (*runs, *v.shape[-2:])) for v in (P, S))
+    return Track(x, P, innovation, S, *gated)
+
+
+def finite(names: str, track: Track) -> Track:
+    """Return the track, or raise ValueError, which blames the arguments `names`, if it overflows.
+
+    A component that is missing leaves NaN in the innovation, and a scan without any in NIS.
+    """
+    innovation = track.innovation
+    _checks.estimates(names, track.x, track.P, track.S, innovation[~np.isnan(innovation)])
+    _checks.estimates("z", np.where(_count(innovation) > 0, track.nis, 0.0))
+    return track
+
+
+def _count(innovation):
+    return np.sum(~np.isnan(innovation), axis=-1)

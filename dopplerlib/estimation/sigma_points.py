@@ -1,0 +1,84 @@
+"""Sigma points: a nonlinear function as a linear one and an error, without derivatives; unchecked.
+
+The points are x and x +- s L e_i with a square root L of P. Half the difference of a pair is s
+times a column of H L, where H is the slope of the regression line; the mean of a pair, less the
+value in the middle, is a curvature d_i. The classical weights of mean and covariance then amount to
+the mean z_0 + mu with mu = sum w d_i, w = 1 / s^2, and the covariance
+
+    H L (H L)' + sum w d_i d_i' + (w_c - w_m - 1) mu mu'
+
+with the weights w_c and w_m of the middle. That is a sum of squares, of H L and of d_i - t mu with
+a number t that is real as long as the weights allow it: no digits are lost where w_m is -1e6.
+"""
+
+from collections.abc import Callable, Iterable
+from math import sqrt
+
+import numpy as np
+
+from .. import _checks
+from .._typing import FloatArray
+from .extended_update import wrapped
+
+
+def scaling(
+    n: int, alpha: float = 1.0, beta: float = 0.0, kappa: float = 0.0
+) -> tuple[float, float]:
+    """Return s and t of the scaled unscented points; by default those of cubature.
+
+    Raises ValueError unless the settings are numbers which give no negative variance.
+    """
+    alpha = _checks.moderate_number("alpha", alpha)
+    beta, kappa = (
+        _checks.one_number(name, value, _checks.moderate)
+        for name, value in (("beta", beta), ("kappa", kappa))
+    )
+    if not n + kappa > 1e-9:
+        raise ValueError(f"kappa must be above {-n} for a state of length {n}, got {kappa}")
+    least = -(alpha**2) * kappa / n
+    if beta < least:
+        raise ValueError(
+            f"beta must be at least {least:g} with alpha = {alpha} and kappa = {kappa}, got {beta}"
+        )
+    share = n / (n + kappa) / alpha**2  # of the pairs in the mean
+    t = (1 - sqrt(max(1 + share * (beta - alpha**2), 0.0))) / share
+    return alpha * sqrt(n + kappa), t
+
+
+def regression(
+    function: Callable[[FloatArray], FloatArray],
+    x: FloatArray,
+    L: FloatArray,
+    scale: tuple[float, float],
+    wrap: Iterable[int] = (),
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the mean of a function of Gaussians, its slope times L, and a root of the rest.
+
+    Parameters
+    ----------
+    function : callable
+        Takes states (..., 2 n + 1, n), returns (..., 2 n + 1, m).
+    x, L : ndarray, shape (..., n) and (..., n, n)
+        Means and square roots of the covariances.
+    scale : tuple of float
+        See `scaling`.
+    wrap : iterable of int
+        Components of the function that are angles.
+
+    Returns
+    -------
+    mean : ndarray, shape (..., m)
+    HL : ndarray, shape (..., m, n)
+    root : ndarray, shape (..., m, n)
+        Its square is the covariance of what the regression line misses.
+    """
+    s, t = scale
+    steps = s * np.concatenate([np.zeros_like(L.mT[..., :1, :]), L.mT, -L.mT], axis=-2)
+    value = function(x[..., None, :] + steps)
+    middle = value[..., 0, :]
+    away = wrapped(value[..., 1:, :] - middle[..., None, :], wrap)
+    n = x.shape[-1]
+    plus, minus = away[..., :n, :], away[..., n:, :]
+    d = (plus + minus) / 2
+    mu = np.sum(d, axis=-2) / s**2
+    return middle + mu, (plus - minus).mT / (2 * s), (d - t * mu[..., None, :]).mT / s
