@@ -11,6 +11,8 @@ _HOME = {
     "doppler_shift": "model.doppler",
     "doppler_jacobian": "model.doppler",
     "constant_velocity": "model.motion",
+    "coordinated_turn": "model.coordinated_turn",
+    "coordinated_turn_jacobian": "model.coordinated_turn",
     "Scenario": "model.scenario",
     "simulate": "model.simulation",
     "iq_from_geometry": "signal.synthesis",

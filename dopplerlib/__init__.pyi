@@ -37,6 +37,8 @@ from .evaluation.whiteness import innovation_whiteness as innovation_whiteness
 from .model.ambiguity import ring_family as ring_family
 from .model.ambiguity import ring_family_direction as ring_family_direction
 from .model.ambiguity import ring_family_limits as ring_family_limits
+from .model.coordinated_turn import coordinated_turn as coordinated_turn
+from .model.coordinated_turn import coordinated_turn_jacobian as coordinated_turn_jacobian
 from .model.doppler import doppler_jacobian as doppler_jacobian
 from .model.doppler import doppler_shift as doppler_shift
 from .model.information import fisher_information as fisher_information
@@ -65,6 +67,8 @@ __all__ = [
     "chi2_gate",
     "chi2_interval",
     "constant_velocity",
+    "coordinated_turn",
+    "coordinated_turn_jacobian",
     "crlb",
     "crlb_frequency_std",
     "doppler_jacobian",

@@ -1,5 +1,6 @@
 # Made by python -m tools.stubs; do not edit.
 from . import ambiguity as ambiguity
+from . import coordinated_turn as coordinated_turn
 from . import doppler as doppler
 from . import information as information
 from . import kinematics as kinematics
