@@ -3,8 +3,8 @@
 import numpy as np
 
 from ... import _checks
-from ...estimation import gaussian
-from ...estimation.extended_update import ekf_update
+from ...estimation import gaussian, recursion
+from ...estimation.nonlinear_kalman import ekf_records
 from ...model.kinematics import ncv_transition, wna_process_noise
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...tracking.bilateration import bilaterate
@@ -60,16 +60,18 @@ def central_filter(records, settings, *, q=None, start=None):
     P = np.broadcast_to(c["start_covariance"] * np.eye(4), (runs, 4, 4))
     # Radar 2 lags radar 1 by the offset, and radar 1 radar 2 by what is left of the interval.
     motion = [_motion(dt, q) for dt in (settings.T - records.offset, records.offset)]
-    steps = []
-    for k in range(z.shape[2]):
+
+    def step(k, state):
+        x, P = state
         used, values = [np.ones(runs, bool)] * 2, [np.full(runs, np.nan)] * 2
         for n in range(2):
             if k or n:
                 x, P = gaussian.predict(x, P, *motion[n])
             if k:
-                x, P, used[n], values[n] = _step(x, P, z[:, n, k], records.sensors[n], settings)
-        steps.append((x, P, np.stack(used, axis=-1), np.stack(values, axis=-1)))
-    x, P, used, values = (np.stack(part, axis=1) for part in zip(*steps, strict=True))
+                x, P, used[n], values[n] = _gated(x, P, z[:, n, k], records.sensors[n], settings)
+        return (x, P), (x, P, np.stack(used, axis=-1), np.stack(values, axis=-1))
+
+    x, P, used, values = recursion.scan(step, (x, P), range(z.shape[2]), axis=1)
     swap = np.swapaxes(used, 1, 2)
     return PositionTrack(x[..., :2], np.ones(x.shape[:2], bool), swap, x, P, values.swapaxes(1, 2))
 
@@ -108,12 +110,11 @@ def table_3_2(records, *, Q=None, start=None):
     x = np.broadcast_to(_checks.finite("start", start, (4,)), (len(measured), 4))
     P = np.broadcast_to(c["start_covariance"] * np.eye(4), (len(x), 4, 4))
     F = ncv_transition(records.time[1] - records.time[0], dim=2, order="derivative")
-    steps = [(x, P)]
-    for k in range(1, measured.shape[1]):
-        x, P = gaussian.predict(x, P, F, Q)
-        x, P, _, _ = ekf_update(x, P, measured[:, k], polar, polar_jacobian, R, wrap=(1,))
-        steps.append((x, P))
-    x, P = (np.stack(part, axis=1) for part in zip(*steps, strict=True))
+    track = ekf_records(
+        measured[:, 1:], lambda x: (F @ x[..., None])[..., 0], lambda x: F, Q,
+        polar, polar_jacobian, R, x, P, wrap=(1,),
+    )  # fmt: skip
+    x, P = (np.insert(after, 0, begin, axis=1) for after, begin in ((track.x, x), (track.P, P)))
     return PositionTrack(x[..., :2], valid, np.stack([valid, valid], axis=1), x, P)
 
 
@@ -161,7 +162,7 @@ def _motion(dt, q):
     )
 
 
-def _step(x, P, z, sensor, settings):
+def _gated(x, P, z, sensor, settings):
     """Update with one radar's detection where the gate lets it through."""
     predicted = range_rate(x, sensor[None])[:, 0]
     H = range_rate_jacobian(x, sensor[None])[:, 0]

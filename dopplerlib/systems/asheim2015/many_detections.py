@@ -3,7 +3,7 @@
 import numpy as np
 
 from ... import _checks
-from ...estimation import gaussian
+from ...estimation import gaussian, recursion
 from ...tracking.association import gnn_assign
 from ...tracking.gates import chi2_gate
 from ...tracking.management import CONFIRMED, DELETED, TrackManager
@@ -161,15 +161,15 @@ def pda_radar(detections, settings, *, x0):
     x = np.broadcast_to(_checks.finite("x0", x0, (2,)), (*batch, 2))
     P = np.broadcast_to(settings.P0, (*batch, 2, 2))
     F = np.array([[1.0, settings.T], [0.0, 1.0]])
-    steps = [(x, np.full(batch, np.nan))]
-    for k in range(1, z.shape[-3]):
-        x, P = gaussian.predict(x, P, F, settings.Q)
+
+    def step(k, state):
+        x, P = gaussian.predict(*state, F, settings.Q)
         R = settings.R(x[..., 0])[..., None] * np.eye(2)
-        step = pda_update(
+        after = pda_update(
             x, P, z[..., k, :, :], np.eye(2), R,
             detection=own["detection"], density=density, gate=settings.gate_probability,
         )  # fmt: skip
-        x, P = step.x, step.P
-        steps.append((x, step.missed))
-    x, missed = zip(*steps, strict=True)
-    return np.stack(x, axis=len(batch)), np.stack(missed, axis=len(batch))
+        return (after.x, after.P), (after.x, after.missed)
+
+    first = x, np.full(batch, np.nan)
+    return recursion.scan(step, (x, P), range(1, z.shape[-3]), len(batch), first=first)

@@ -4,6 +4,7 @@ import numpy as np
 
 from ... import _checks
 from ..._records import record
+from ...estimation import recursion
 from ...tracking.association import nearest_neighbor
 from ...tracking.gates import chi2_gate, fixed_box_gate
 from .published import Settings
@@ -86,14 +87,9 @@ def filter_radar(
     x = _start(z[..., 0, :, :], x0)
     P = np.broadcast_to(settings.P0[[0, 0, 1], [0, 1, 1]], (*batch, 3))
     m = 2 if doppler else 1
-    steps = []
-    for k in range(K):
-        if k == 0 and not reuse_first:
-            seen = np.isfinite(z[..., 0, :, :]).all(axis=-1).any(axis=-1)
-            chosen = np.where(seen[..., None], x, np.nan)
-            steps.append((x, P, chosen, seen, np.full(batch, np.nan)))
-            continue
-        x, P = _predicted(x, P, settings)
+
+    def step(k, state):
+        x, P = _predicted(*state, settings)
         R = settings.R(x[..., 0])
         nu = z[..., k, :, :] - x[..., None, :]
         nis, accept = _gate(nu, P, R, settings, m)
@@ -111,8 +107,14 @@ def filter_radar(
             x, P = _updated(x, P, i, chosen[..., i], R[..., i], used)
         with np.errstate(invalid="ignore"):
             least = np.fmin.reduce(nis, axis=-1)
-        steps.append((x, P, chosen, used, least))
-    x, P, *rest = (np.stack(part, axis=len(batch)) for part in zip(*steps, strict=True))
+        return (x, P), (x, P, chosen, used, least)
+
+    times, first = range(K), None
+    if not reuse_first:
+        seen = np.isfinite(z[..., 0, :, :]).all(axis=-1).any(axis=-1)
+        times = range(1, K)
+        first = x, P, np.where(seen[..., None], x, np.nan), seen, np.full(batch, np.nan)
+    x, P, *rest = recursion.scan(step, (x, P), times, len(batch), first=first)
     return RadarTrack(x, P[..., [0, 1, 1, 2]].reshape(*P.shape[:-1], 2, 2), *rest)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from ... import _checks
 from ..._records import record
+from ...estimation import recursion
 from ...model.kinematics import ncv_transition
 from .published import settings
 from .tracking import gain_sequence, measure
@@ -96,9 +97,8 @@ def follow(truth, rule, runs, *, rng, velocity=True, s=None):
     children = zip(truth, rng.spawn(2), strict=True)
     z = np.stack([measure(one, runs, rng=child, s=s) for one, child in children], axis=1)
     F, gains = ncv_transition(s.T), gain_sequence(s)
-    x = np.empty_like(z)
-    x[:, :, 0] = state = z[:, :, 0]
-    for k in range(1, z.shape[2]):
+
+    def step(k, state):
         state = state @ F.T
         # P + E_z = (I - K)^{-1} E_z, for each axis
         S = np.kron(np.eye(2), np.linalg.solve(np.eye(2) - gains[k], s.E_z[:2, :2]))
@@ -108,7 +108,10 @@ def follow(truth, rule, runs, *, rng, velocity=True, s=None):
         cost = np.sum(weighted * nu[..., part], axis=-1)
         taken = np.take_along_axis(nu, _choice(cost, rule)[..., None, None], axis=2)[:, :, 0]
         state = state + taken @ np.kron(np.eye(2), gains[k]).T
-        x[:, :, k] = state
+        return state, (state,)
+
+    begin = z[:, :, 0]
+    (x,) = recursion.scan(step, begin, range(1, z.shape[2]), axis=2, first=(begin,))
     off = np.linalg.norm(x[:, :, None, -1, ::2] - truth[:, -1, ::2], axis=-1)
     nearest = off.argmin(axis=-1)
     swapped = (nearest == [1, 0]).all(axis=1)

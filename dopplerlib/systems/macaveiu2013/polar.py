@@ -3,7 +3,7 @@
 import numpy as np
 
 from ... import _checks
-from ...estimation import gaussian
+from ...estimation import gaussian, recursion
 from ...estimation.extended_update import linearized
 from ...estimation.track import Track
 from ...model.kinematics import ncv_transition
@@ -159,12 +159,13 @@ def naive(z, s=None):
 def _track(z, s, begin, model):
     """Filter with a function that returns innovation, H and R of predicted states and a scan."""
     F, Q = ncv_transition(s.T), s.E_x
-    x, P = begin
-    steps = [(x, P, np.full(len(x), np.nan))]
-    for k in range(1, z.shape[1]):
-        x, P = gaussian.predict(x, P, F, Q)
+
+    def step(k, state):
+        x, P = gaussian.predict(*state, F, Q)
         innovation, H, R = model(x, z[:, k])
         x, P, S = gaussian.update(x, P, innovation, H, R)
-        steps.append((x, P, gaussian.quadratic_form(innovation, S)))
-    x, P, score = (np.stack(values, axis=1) for values in zip(*steps, strict=True))
+        return (x, P), (x, P, gaussian.quadratic_form(innovation, S))
+
+    first = (*begin, np.full(len(z), np.nan))
+    x, P, score = recursion.scan(step, begin, range(1, z.shape[1]), axis=1, first=first)
     return Track(x, P, None, None, score, np.isfinite(score))

@@ -10,6 +10,7 @@ import numpy as np
 
 from ... import _checks
 from ..._records import record
+from ...estimation import recursion
 from ...estimation.extended_kalman import ekf
 from ...estimation.track import Track
 from ...evaluation.consistency import nees
@@ -92,8 +93,9 @@ def switched_ekf(
     R = sigma_f**2 * np.eye(len(array))
     x = np.broadcast_to(x0, (len(z), 6))
     eye = np.eye(len(array))
-    steps = []
-    for k in range(z.shape[1]):
+
+    def step(k, state):
+        x, P = state
         x, P = x @ F.T, F @ P @ F.T + Q
         H = slope[k] if tangent_at == "path" else doppler_jacobian(x, array)
         predicted = curvature * doppler_shift(x, array) if curvature else 0.0
@@ -118,9 +120,10 @@ def switched_ekf(
         extra = S - straight_S
         P = A @ P @ np.swapaxes(A, -1, -2) + gain @ extra @ np.swapaxes(gain, -1, -2)
         nis = np.sum(innovation * _times(weight, innovation), axis=-1)
-        steps.append((x, P, innovation, S, nis))
-    x, P, innovation, S, nis = (np.stack(part, axis=1) for part in zip(*steps, strict=True))
-    return Track(x, P, innovation, S, nis, np.ones(nis.shape, bool))
+        return (x, P), (x, P, innovation, S, nis)
+
+    track = recursion.scan(step, (x, P), range(z.shape[1]), axis=1)
+    return Track(*track, np.ones(z.shape[:2], bool))
 
 
 @record

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ... import _checks
+from ...estimation import recursion
 from ...estimation.track import Track
 from ...kernels.doppler import doppler_shift_and_gradient
 from ...model.doppler import doppler_jacobian
@@ -75,9 +76,9 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
     F, Q = constant_velocity(T, sigma_p)
     signs, sensors = _signs(jacobian), (*array.positions.T, array.doppler_per_speed)
     R = sigma_f**2 * np.eye(m)
-    shapes = {"x": (6,), "P": (6, 6), "innovation": (m,), "S": (m, m), "nis": ()}
-    out = {name: np.empty((runs, samples, *shape)) for name, shape in shapes.items()}
-    for k in range(samples):
+
+    def step(k, state):
+        x, P = state
         x, P = x @ F.T, F @ P @ F.T + Q
         # The kernel gives the shifts and their derivatives at once.
         shift, *gradient = doppler_shift_and_gradient(*x.T[..., None], *sensors)
@@ -93,9 +94,10 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
         A = np.eye(6) - gain @ H
         P = A @ P @ A.mT + sigma_f**2 * gain @ gain.mT
         nis = np.sum(innovation * solved[..., 6], axis=-1)
-        for name, value in zip(out, (x, P, innovation, S, nis), strict=True):
-            out[name][:, k] = value
-    return Track(**out, updated=np.ones((runs, samples), bool))
+        return (x, P), (x, P, innovation, S, nis)
+
+    track = recursion.scan(step, (x, P), range(samples), axis=1)
+    return Track(*track, np.ones((runs, samples), bool))
 
 
 def _signs(jacobian):
