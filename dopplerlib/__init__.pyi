@@ -1,4 +1,5 @@
 # Made by python -m tools.stubs; do not edit.
+from . import chain as chain
 from . import derive as derive
 from . import estimation as estimation
 from . import evaluation as evaluation

@@ -22,6 +22,7 @@ ORDER = [
     "signal",
     "estimation",
     "tracking",
+    "chain",
     "evaluation",
     "systems",
     "figures",

@@ -20,7 +20,7 @@ import numpy as np
 
 SECTION = re.compile(r"^(\w[\w ]*)\n-+\n", flags=re.MULTILINE)
 ENTRY = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.MULTILINE)
-PACKAGES = ("model", "signal", "estimation", "tracking", "evaluation", "derive")
+PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "derive")
 # How a docstring says that arguments are checked elsewhere: such a function promises nothing.
 UNCHECKED = re.compile(r"\bunchecked\b|\bnot checked\b", flags=re.IGNORECASE)
 
@@ -165,7 +165,7 @@ def trace(package, most=3):
 
 
 def _all_modules():
-    names = ("model", "signal", "estimation", "tracking", "evaluation", "systems")
+    names = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "systems")
     return [module for name in names for module in modules(f"dopplerlib.{name}")]
 
 

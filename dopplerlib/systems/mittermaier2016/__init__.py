@@ -5,10 +5,11 @@ Adv. Radio Sci. 14, 39-46, doi:10.5194/ars-14-39-2016.
 """
 
 from ..._lazy import attach
+from ...chain.baseband import Baseband
 from .causes import Consistency, consistency_runs, matched_P0, range_claims, switched_ekf
 from .chain_bounds import median_error, position_bound, position_bound_iq, record_for
 from .chain_errors import Judged, judged
-from .end_to_end import EndToEnd, track_iq
+from .end_to_end import track_iq
 from .error_map import ErrorMap, comparable, figure3, figure3_bound, shares_above
 from .faults import faulty_filters, linear_filter, linear_world
 from .figure6_readings import Figure6Readings, figure6_readings, ruled_out, still_counts
@@ -38,7 +39,7 @@ from .published import (
     table2,
 )
 from .race import RACE, RACE_LEVELS, Race, race_cell, race_windows, saved_race
-from .received_iq import FAULTS, Baseband, received
+from .received_iq import FAULTS, received
 from .simulated_iq import SIMULATED, read_simulated_iq, simulated_recording, write_simulated_iq
 from .start import Starts, samples_needed, start_box, start_misfit, table2_starts
 from .sweep_readings import (
@@ -61,7 +62,6 @@ __all__ = [
     "SIMULATED",
     "Baseband",
     "Consistency",
-    "EndToEnd",
     "ErrorMap",
     "Figure4",
     "Figure6",

@@ -20,7 +20,7 @@ class Judged:
         Normalized innovation squared of the hypothesis that counts in the end, averaged over the
         samples of the filter.
     memory : ndarray, shape (runs,)
-        Autocorrelation of the innovations, see `EndToEnd`.
+        Autocorrelation of the innovations, see `IqTrack`.
     """
 
     error: np.ndarray
@@ -34,12 +34,12 @@ def judged(found, moments=(0.5, 1.0), carry=True):
 
     Parameters
     ----------
-    found : EndToEnd
+    found : IqTrack
         Tracks of the target of Table 2.
     moments : sequence of float
         When to compare, in s on the clock: with the true state *at* that moment.
     carry : bool
-        See `EndToEnd.at`.
+        See `IqTrack.at`.
 
     Returns
     -------

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ... import _checks
+from ...chain.baseband import Baseband
 from ...signal.impairments import correct_iq_imbalance, remove_mean
-from .received_iq import Baseband
 
 
 def fit_phases(iq, x, moment, steps=3):

@@ -10,9 +10,10 @@ import numpy as np
 
 from ..._data import on_disk
 from ..._files import write_text
+from ...chain.baseband import Baseband
 from ...signal.recording import Recording, read_sigmf, write_sigmf
 from .published import scenario
-from .received_iq import Baseband, received
+from .received_iq import received
 
 # Everything that the recording depends on, beside the scenario.
 SIMULATED = {"seed": 20160907, "fs": 2000.0, "snr_db": 27.0, "amplitude": 0.4, "truth_step": 0.02}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from dopplerlib.chain.track import IqTrack
 from dopplerlib.systems import mittermaier2016 as paper
 
 S = paper.scenario()
@@ -26,7 +27,8 @@ def found():
     score = np.array([[[1.0, 1.0, 9.0, 1.0], [2.0, 2.0, 2.0, 2.0]]])
     nis, memory = np.array([[[1.0, 2, 3], [4, 5, 6]]]), np.array([0.1])
     z = np.zeros((1, 4, 6))
-    return paper.EndToEnd(TIME, TIME + LATER, z, z + 1, 1, x, P, nis, memory, score, 0.5)
+    degrees = np.array([18])
+    return IqTrack(TIME, TIME + LATER, z, z + 1, 1, x, P, nis, memory, score, degrees, 0.5)
 
 
 def test_the_likeliest_so_far_counts_whatever_comes_later(found):

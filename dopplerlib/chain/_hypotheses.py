@@ -1,24 +1,34 @@
 """Hypotheses about the start of the whole chain, and the filters that begin with them."""
 
+from itertools import product
+
 import numpy as np
 
-from ...estimation.extended_kalman import ekf
-from ...estimation.maximum_likelihood import ml_start
-from ...model.doppler import doppler_jacobian
+from ..estimation.extended_kalman import ekf
+from ..estimation.maximum_likelihood import ml_start
+from ..model.doppler import doppler_jacobian
 
 # Hypotheses whose chi-square is higher than the least by this have a likelihood of 3e-7 of it.
 CARRIED = 30.0
 
 
-def quarters(lower, upper):
-    """Return the four quarters of a box by the signs of y and z."""
+def parts(box, array):
+    """Return the parts of a box between the planes through the middle of an array.
+
+    There is a plane at right angles to each axis along which the sensors lie apart, unless it
+    misses the box: a ring has two of them, and a box in front of it four parts.
+    """
+    lower, upper = box
+    low, high = array.positions.min(axis=0), array.positions.max(axis=0)
+    # The middle of a ring is at the origin but for rounding.
+    middle = np.round((low + high) / 2, 12) + 0.0
+    cut = (high > low) & (lower[:3] < middle) & (middle < upper[:3])
     boxes = []
-    for right in (False, True):
-        for up in (False, True):
-            low, high = lower.copy(), upper.copy()
-            for axis, positive in ((1, right), (2, up)):
-                (low if positive else high)[axis] = 0.0
-            boxes.append((low, high))
+    for above in product((False, True), repeat=int(cut.sum())):
+        first, last = lower.copy(), upper.copy()
+        for axis, positive in zip(np.flatnonzero(cut), above, strict=True):
+            (first if positive else last)[axis] = middle[axis]
+        boxes.append((first, last))
     return boxes
 
 
@@ -40,15 +50,18 @@ def hypotheses(z, std, array, T, apart, boxes):
     return np.stack(states, axis=1), np.stack(costs, axis=1) / variance[:, None], weights
 
 
-def filters(z, std, weights, array, T, used, apart, sigma_p, states, costs):
-    """Return x, P, nis, memory and score of the filters from the hypotheses of one run."""
+def filters(z, std, weights, array, T, used, apart, sigma_p, free, states, costs):
+    """Return x, P, nis, memory and score of the filters from the hypotheses of one run.
+
+    `free` (6,) says which components of the state are unknown at the start.
+    """
     shape = (len(states), 1 + len(z) - used)
     x, P = np.full((*shape, 6), np.nan), np.full((*shape, 6, 6), np.nan)
     nis, score = np.full((shape[0], shape[1] - 1), np.nan), np.full(shape, np.inf)
     innovations = {}
     costs = np.where(np.isnan(costs), np.inf, costs)
     for i in np.flatnonzero(costs < costs.min() + CARRIED):
-        covariance = start_covariance(states[i], array, weights, apart * T)
+        covariance = start_covariance(states[i], array, weights, apart * T, free)
         if covariance is None:
             continue
         x[i, 0], P[i, 0], score[i] = states[i], covariance, costs[i]
@@ -88,7 +101,7 @@ def _memory(innovation, factor):
     return np.sum(normal[1:] * normal[:-1]) / power if power > 0 else np.nan
 
 
-def start_covariance(x, array, std, T):
+def start_covariance(x, array, std, T, free):
     """Return the covariance of a state at the last sample by its Fisher information, or None."""
     if not np.isfinite(x).all():
         return None
@@ -97,10 +110,14 @@ def start_covariance(x, array, std, T):
     F[:, :3, 3:] = back[:, None, None] * np.eye(3)
     # An infinite deviation leaves nothing of the slope.
     slopes = doppler_jacobian(np.einsum("kij,j->ki", F, x), array) @ F / std[..., None]
-    slopes = slopes.reshape(-1, 6)
+    slopes = np.compress(free, slopes.reshape(-1, 6), axis=1)
     scale = np.linalg.norm(slopes, axis=0)
+    if not scale.all():
+        return None
     _, w, vt = np.linalg.svd(slopes / scale, full_matrices=False)
     if w[-1] < 1e-6 * w[0]:
         return None
     root = vt.T / w / scale[:, None]
-    return root @ root.T
+    P = np.zeros((6, 6))
+    P[np.ix_(free, free)] = root @ root.T
+    return P

@@ -9,11 +9,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.stats import multivariate_normal
 
 from dopplerlib import doppler_jacobian, doppler_shift, ekf
+from dopplerlib.chain._hypotheses import filters, parts, start_covariance
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016._hypotheses import filters, quarters, start_covariance
 
 S = paper.scenario()
 T, USED, APART = 0.0125, 21, 2
+ALL = np.ones(6, dtype=bool)
 
 
 def moved(state, time):
@@ -28,7 +29,7 @@ def found():
 
 def test_the_quarters_cover_the_room():
     lower, upper = paper.start_box()
-    boxes = quarters(lower, upper)
+    boxes = parts((lower, upper), S.array)
     volume = sum(np.prod(high - low) for low, high in boxes)
     assert volume == pytest.approx(np.prod(upper - lower))
     assert len({(low[1] == 0, low[2] == 0) for low, _ in boxes}) == 4
@@ -41,7 +42,9 @@ def test_hypotheses_a_million_times_less_likely_are_dropped(above, kept):
     """exp(-30 / 2) is 3e-7: 29 is kept, and 31 is not."""
     z = np.tile(doppler_shift(S.x0, S.array), (USED, 1))
     costs = np.array([7.0, 7.0 + above])
-    *_, score = filters(z, 0 * z + 0.1, 0 * z + 0.1, S.array, T, USED, 1, 0.4, [S.x0] * 2, costs)
+    *_, score = filters(
+        z, 0 * z + 0.1, 0 * z + 0.1, S.array, T, USED, 1, 0.4, ALL, [S.x0] * 2, costs
+    )
     assert_array_equal(np.isfinite(score), [[True], [kept]])
 
 
@@ -80,7 +83,7 @@ def test_a_missing_module_adds_nothing_to_the_score(found):
     x = found.x[0, np.argmin(found.score[0, :, 0]), 0]
     five = type(S.array)(np.delete(S.array.positions, 4, axis=0), S.array.wavelength)
     rest = (np.delete(a, 4, axis=1) for a in (z, std, std[:USED:APART]))
-    used, common = found.used, (T, found.used, APART, 0.4, [x], np.array([1.0]))
+    used, common = found.used, (T, found.used, APART, 0.4, ALL, [x], np.array([1.0]))
     weights = std[:used:APART]
     six = filters(z, std, weights, S.array, *common)
     z5, std5, _ = rest
@@ -120,12 +123,12 @@ def test_the_covariance_of_a_start_is_the_inverse_of_all_information():
         J += H.T @ (H / std[k][:, None] ** 2)
     expected = np.linalg.inv(J)
     scale = np.sqrt(np.diagonal(expected))
-    found = start_covariance(S.x0, S.array, std, T)
+    found = start_covariance(S.x0, S.array, std, T, ALL)
     # The information has a condition of 1e6 or so.
     assert_allclose(found / np.outer(scale, scale), expected / np.outer(scale, scale), atol=1e-7)
 
 
 def test_a_start_from_too_little_has_no_covariance():
     """A ring sees no range from a snapshot."""
-    assert start_covariance(S.x0, S.array, np.full((1, 6), 0.1), T) is None
-    assert start_covariance(np.full(6, np.nan), S.array, np.full((9, 6), 0.1), T) is None
+    assert start_covariance(S.x0, S.array, np.full((1, 6), 0.1), T, ALL) is None
+    assert start_covariance(np.full(6, np.nan), S.array, np.full((9, 6), 0.1), T, ALL) is None

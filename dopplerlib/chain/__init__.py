@@ -1,0 +1,5 @@
+"""From a recording to a track: the whole chain, on any array."""
+
+from .._lazy import attach
+
+__getattr__, __dir__ = attach(__name__, __path__)

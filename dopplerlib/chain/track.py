@@ -1,0 +1,400 @@
+"""From IQ samples to tracks: shifts, hypotheses about the start, and a filter from each of them."""
+
+import warnings
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+
+from .. import _checks
+from .._records import record
+from .._typing import ArrayLike, BoolArray, FloatArray, IntArray
+from ..estimation.maximum_likelihood import IMPLAUSIBLE, ImplausibleStart
+from ..model.motion import constant_velocity
+from ..signal.frequency import ml_frequency
+from ..signal.impairments import correct_iq_imbalance, remove_mean
+from ..signal.sliding import sliding_doppler
+from ._hypotheses import filters, hypotheses, parts
+from .baseband import Baseband
+
+
+@record
+class IqTrack:
+    """Tracks from IQ samples, one for each hypothesis about the start.
+
+    Leading axes are those of the samples.
+
+    Attributes
+    ----------
+    time : ndarray, shape (K,)
+        Time in s to which each Doppler shift is taken to belong.
+    known : ndarray, shape (K,)
+        Time on the clock at which it can be known: the end of its window.
+    shift, shift_std : ndarray, shape (..., K, N)
+        Doppler shifts in Hz and the deviations with which they were used. NaN and infinite where a
+        window is too weak to be used.
+    used : int
+        Samples that went into the start; the filter runs on those that follow.
+    x : ndarray, shape (..., H, 1 + K - used, 6)
+        States of H hypotheses, at the last sample of the start and after each update; NaN if
+        there is no such hypothesis.
+    P : ndarray, shape (..., H, 1 + K - used, 6, 6)
+        Their covariances.
+    nis : ndarray, shape (..., H, K - used)
+        Normalized innovation squared.
+    memory : ndarray, shape (...)
+        Autocorrelation of the normalized innovations from one sample to the next, averaged over the
+        sensors, for the hypothesis that is the likeliest in the end; NaN if a sensor is missing in
+        any sample.
+    score : ndarray, shape (..., H, 1 + K - used)
+        Minus twice the log likelihood of all samples so far, up to a constant; infinite if there is
+        no such hypothesis. The first one is the chi-square of the start.
+    degrees : ndarray, shape (...)
+        Degrees of freedom of this chi-square: shifts that are there less unknowns.
+    sigma_p : float
+        Standard deviation in m/s of what a second does to each velocity, see `track_iq`.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described.
+
+    Examples
+    --------
+    A track of one sample after a start of one, and where it is a tenth of a second later:
+
+    >>> x, P = [[[1, 2, 3, 1, 0, 0]] * 2], [[np.eye(6)] * 2]
+    >>> z, score = [[5.0], [6.0]], [[0.0, 1.0]]
+    >>> one = IqTrack([0.1, 0.2], [0.1, 0.2], z, z, 1, x, P, [[0.5]], 0.0, score, 0, 0.1)
+    >>> bool(one.plausible), one.final_nis.tolist(), one.samples_at(0.15)
+    (True, [0.5], 0)
+    >>> one.at(0.3)[0].round(3).tolist()
+    [1.1, 2.0, 3.0, 1.0, 0.0, 0.0]
+    """
+
+    time: np.ndarray
+    known: np.ndarray
+    shift: np.ndarray
+    shift_std: np.ndarray
+    used: int
+    x: np.ndarray
+    P: np.ndarray
+    nis: np.ndarray
+    memory: np.ndarray
+    score: np.ndarray
+    degrees: np.ndarray
+    sigma_p: float
+
+    def __post_init__(self):
+        """Check the fields."""
+        shift = _checks.measured("shift", self.shift, (None, None))
+        leading, K = shift.shape[:-2], shift.shape[-2]
+        used = _checks.count("used", self.used, K)
+        x = _checks.measured("x", self.x, (None, 1 + K - used, 6))
+        each = *leading, x.shape[len(leading)], 1 + K - used
+        shapes = {
+            "time": (K,), "known": (K,), "shift": shift.shape, "shift_std": shift.shape,
+            "x": (*each, 6), "P": (*each, 6, 6), "nis": (*each[:-1], K - used),
+            "memory": leading, "score": each, "degrees": leading,
+        }  # fmt: skip
+        for name, shape in shapes.items():
+            values = _checks.real(name, getattr(self, name))
+            if values.shape != shape:
+                raise ValueError(f"{name} must have shape {shape}, got {values.shape}")
+            if name in ("time", "known", "degrees"):
+                _checks.moderate(name, values)
+            elif name not in ("shift_std", "score"):
+                _checks.measured(name, values, ())
+            object.__setattr__(self, name, values)
+        object.__setattr__(self, "used", used)
+        object.__setattr__(self, "sigma_p", _checks.moderate_number("sigma_p", self.sigma_p))
+
+    @property
+    @_checks.quiet
+    def plausible(self) -> BoolArray:
+        """Whether the chi-square of the start is at most a hundred times its degrees of freedom.
+
+        Shape (...). If not, no straight flight in the box explains the shifts, or there was no
+        start; for the usual reasons see `Start.plausible`.
+        """
+        return self.score[..., 0].min(axis=-1) <= IMPLAUSIBLE * np.maximum(self.degrees, 1)
+
+    @property
+    def final_nis(self) -> FloatArray:
+        """NIS of the hypothesis that is the likeliest in the end, shape (..., K - used)."""
+        return _of_each(self.nis, np.argmin(self.score[..., -1], axis=-1))
+
+    def samples_at(self, moment: float) -> int:
+        """Return how many samples of the filter are known at a moment.
+
+        Parameters
+        ----------
+        moment : float
+            Time on the clock in s.
+
+        Returns
+        -------
+        int
+
+        Raises
+        ------
+        ValueError
+            If `moment` is before the start is known.
+        """
+        moment = _checks.one_number("moment", moment, _checks.moderate)
+        k = int(np.sum(self.known <= moment + 1e-9)) - self.used
+        if k < 0:
+            raise ValueError(
+                f"moment must not be before {self.known[self.used - 1]:.4g} s, got {moment}"
+            )
+        return k
+
+    @_checks.quiet
+    def at(self, moment: float, carry: bool = True) -> tuple[FloatArray, FloatArray, IntArray]:
+        """Return what is known at a moment about the state at that moment.
+
+        Parameters
+        ----------
+        moment : float
+            Time on the clock in s, not before the start is known.
+        carry : bool
+            Whether all hypotheses are carried on: then whichever is the likeliest so far counts,
+            else the one that was the likeliest at the start.
+
+        Returns
+        -------
+        x : ndarray, shape (..., 6)
+            State, predicted from the last sample that is known; NaN if there was no start.
+        P : ndarray, shape (..., 6, 6)
+            Its covariance.
+        chosen : ndarray of int, shape (...)
+            Which hypothesis it is.
+
+        Raises
+        ------
+        ValueError
+            If `moment` is before the start is known.
+        """
+        k = self.samples_at(moment)
+        carry = _checks.one_boolean("carry", carry)
+        chosen = np.argmin(self.score[..., k if carry else 0], axis=-1)
+        x, P = _of_each(self.x[..., k, :], chosen), _of_each(self.P[..., k, :, :], chosen)
+        ahead = float(moment) - self.time[self.used + k - 1]
+        if ahead > 1e-9:
+            F, Q = constant_velocity(ahead, self.sigma_p / np.sqrt(ahead))
+            x, P = x @ F.T, F @ P @ F.T + Q
+        return x, P, chosen
+
+
+def track_iq(
+    iq: Baseband,
+    box: tuple[ArrayLike, ArrayLike],
+    *,
+    speed_limit: float,
+    sigma_p: float,
+    window: float,
+    start: float,
+    hop: float | None = None,
+    remove_dc: bool = True,
+    dc_until: float | None = None,
+    balance: bool = True,
+    estimator: Callable[..., Any] = ml_frequency,
+    inflate: float = 1.0,
+    least_snr: float = 20.0,
+    search: Literal["parts", "whole"] = "parts",
+) -> IqTrack:
+    """Find and track a target from the IQ samples of an array.
+
+    Parameters
+    ----------
+    iq : Baseband
+        Samples of N sensors; leading axes are runs.
+    box : pair of array_like, shape (3,) or (6,)
+        Lower and upper bounds of the position in m at the first window, or of the state in m and
+        m/s; if of the position, each velocity lies within `speed_limit`. Equal bounds fix a
+        component at the start, and with a coordinate its velocity at 0.
+    speed_limit : float
+        Largest speed in m/s. Doppler shifts are searched for up to that of it.
+    sigma_p : float
+        Standard deviation in m/s by which each velocity wanders in a second, and by sqrt(t) times
+        as much in t seconds, whatever the hop. With a deviation of the acceleration as
+        `constant_velocity` takes it for an interval T, it is that times sqrt(T).
+    window : float
+        Length of the windows in s. In it the target should fly straight, and turn little about any
+        sensor: its Doppler shift should change by less than ``1 / window``.
+    start : float
+        Time on the clock in s until which shifts go into the maximum-likelihood start.
+    hop : float, optional
+        From one window to the next in s; `window` if None. Both are rounded to whole samples.
+    remove_dc, balance : bool
+        Whether a constant is removed, and whether the branches are made equal.
+    dc_until : float, optional
+        Time on the clock in s until which the mean of the samples is taken for the constant; the
+        whole record if None. An echo that grows has a mean too, most of it from its end.
+    estimator : callable
+        What finds the frequency of a window, see `sliding_doppler`.
+    inflate : float
+        Factor on the variances of the shifts.
+    least_snr : float
+        What the measured signal-to-noise ratio of a whole window must be for its shift to be used.
+    search : {"parts", "whole"}
+        Where hypotheses about the start come from. "parts": the likeliest state in each part of
+        the box between the planes through the middle of the array. "whole": the likeliest and the
+        second one that `ml_start` finds in the whole box; so it is also if there is one part only.
+
+    Returns
+    -------
+    IqTrack
+
+    Raises
+    ------
+    ValueError
+        If the samples of `iq` are not sound, there are less than two windows in `start` or too few
+        for the unknowns, `speed_limit` is beyond half the sampling rate, a number is not positive,
+        `dc_until` is not within the record, or an argument is refused by `sliding_doppler`.
+
+    Warns
+    -----
+    ImplausibleStart
+        If chi-square of the likeliest start is more than a hundred times its degrees of freedom:
+        I and Q are exchanged, sensors are in another order, or no target is in the box.
+
+    Notes
+    -----
+    The start sees windows side by side only, even if there are more that overlap, and gives all of
+    them the same weight. Hypotheses much less likely than the best are dropped there and then.
+    There is a plane at right angles to each axis along which the sensors lie apart: a ring, which
+    confuses states left and right, and above and below, has two of them.
+
+    The deviations are those of the bound at the *measured* signal-to-noise ratio of each window and
+    sensor.
+
+    A sensor that is too weak in a window, or has a sample there that is no measurement, is missing,
+    and the others go on. What is no measurement is decided on the samples before anything else, see
+    `Baseband.samples`. In mere noise, a window of n samples reaches `least_snr` with a probability
+    of about ``(1 + B T sqrt(pi s / 3)) (1 + s / (n - 2.5))^(1 - n)``, where s is 1.5 more, B the
+    searched band of ``4 speed_limit / wavelength`` and T the length of the window: Rice's formula
+    for the crossings of a level, and the law of a share of the energy. With 20 it is less than one
+    in a hundred thousand, unless windows are shorter than 25 samples or so.
+
+    Examples
+    --------
+    Five sensors on the walls of a room, and a target that crosses it at a known height:
+
+    >>> from dopplerlib import RadarArray, iq_from_geometry
+    >>> places = [[0, 0, 2], [6, 0, 2.2], [6, 5, 2], [0, 5, 2.2], [3, 0, 1.8]]
+    >>> array = RadarArray(places, wavelength=0.0285)
+    >>> path = [1.5, 2.5, 1] + np.arange(2000)[:, None] / 1e3 * [1, 0.3, 0]
+    >>> iq = Baseband(iq_from_geometry(path, array, 20, rng=np.random.default_rng(1)), 1e3, array)
+    >>> box = [0, 0, 1], [6, 5, 1]
+    >>> found = track_iq(iq, box, speed_limit=2, sigma_p=0.1, window=0.05, start=0.5)
+    >>> bool(found.plausible), found.at(1.999)[0].round(1).tolist()
+    (True, [3.5, 3.1, 1.0, 1.0, 0.3, 0.0])
+    """
+    _checks.instance("iq", iq, Baseband)
+    inflate = _checks.moderate_number("inflate", inflate)
+    sigma_p = _checks.moderate_number("sigma_p", sigma_p)
+    least_snr = _checks.moderate_number("least_snr", least_snr)
+    top = _checks.moderate_number("speed_limit", speed_limit) * iq.array.doppler_per_speed
+    if top > iq.fs / 2:
+        raise ValueError(
+            f"speed_limit must be at most {iq.fs / 2 / iq.array.doppler_per_speed:g} m/s, of which "
+            f"half the sampling rate is the Doppler shift, got {speed_limit}"
+        )
+    lower, upper = _box(box, speed_limit)
+    x, valid = iq.samples()
+    n = _length("window", window, iq)
+    step = n if hop is None else max(1, _length("hop", hop, iq))
+    if _checks.one_boolean("remove_dc", remove_dc):
+        x = _without_constant(x, valid, iq, dc_until)
+    if _checks.one_boolean("balance", balance):
+        x = correct_iq_imbalance(x, valid)
+    leading = x.shape[:-2]
+    x, valid = (v.reshape(-1, *v.shape[-2:]) for v in (x, valid))
+    d = sliding_doppler(x, iq.fs, n, step, estimator, band=(-top, top), valid=valid)
+    time = iq.first + d.time - iq.delay
+    known = iq.first + (np.arange(len(d.time)) * step + n - 1) / iq.fs
+    seen = n * d.snr >= least_snr
+    z = np.where(seen, d.frequency, np.nan)
+    std = np.where(seen, d.frequency_std * np.sqrt(inflate / iq.noise_gain), np.inf)
+    used = int(np.sum(known <= _checks.positive_number("start", start) + 1e-9))
+    if used < 2:
+        raise ValueError(f"start must hold at least two windows, got {used} in {start} s")
+    T = step / iq.fs
+    apart = -(-n // step)
+    free = lower < upper
+    if -(-used // apart) * len(iq.array) < free.sum():
+        raise ValueError(
+            f"start must hold windows side by side for {free.sum()} unknowns, got {start} s"
+        )
+    whole = _checks.one_of("search", search, ("parts", "whole")) == "whole"
+    boxes = [(lower, upper)] if whole else parts((lower, upper), iq.array)
+    states, costs, weights = hypotheses(z[:, :used], std[:, :used], iq.array, T, apart, boxes)
+    degrees = np.isfinite(weights).sum(axis=(1, 2)) - free.sum()
+    _warn_unless_plausible(costs, degrees)
+    fixed = iq.array, T, used, apart, sigma_p / np.sqrt(T), free
+    each = [
+        filters(z, s, early, *fixed, *starts)
+        for z, s, early, *starts in zip(z, std, weights, states, costs, strict=True)
+    ]
+    fields = [np.array(field) for field in zip(*each, strict=True)]
+    z, std, *fields = (v.reshape((*leading, *v.shape[1:])) for v in (z, std, *fields, degrees))
+    return IqTrack(time, known, z, std, used, *fields, sigma_p)
+
+
+def _of_each(values, chosen):
+    """Return those of one hypothesis for each run; the axis of hypotheses follows the runs'."""
+    place = np.expand_dims(chosen, tuple(range(chosen.ndim, values.ndim)))
+    return np.take_along_axis(values, place, axis=chosen.ndim).squeeze(axis=chosen.ndim)
+
+
+def _box(box, speed_limit):
+    """Return the bounds of the state."""
+    bounds = tuple(_checks.iterable("box", box, "a pair (lower, upper)"))
+    if len(bounds) != 2:
+        raise ValueError(f"box must be a pair (lower, upper), got {len(bounds)} bounds")
+    lower, upper = (_checks.moderate("box", bound) for bound in bounds)
+    if lower.shape != upper.shape or lower.shape not in ((3,), (6,)):
+        raise ValueError(
+            f"box must be a pair of arrays of shape (3,) or (6,), got {lower.shape}, {upper.shape}"
+        )
+    if (lower > upper).any():
+        raise ValueError(f"box must not be empty, got {lower.tolist()} to {upper.tolist()}")
+    if len(lower) == 6:
+        return lower, upper
+    v = np.where(lower < upper, speed_limit, 0.0)
+    return np.concatenate([lower, -v]), np.concatenate([upper, v])
+
+
+def _warn_unless_plausible(costs, degrees):
+    cost = np.fmin.reduce(costs, axis=1)
+    wrong = np.flatnonzero(cost > IMPLAUSIBLE * np.maximum(degrees, 1))
+    if len(wrong):
+        i = wrong[0]
+        warnings.warn(
+            f"no start explains the Doppler shifts of run {i}: chi-square {cost[i]:.0f} for "
+            f"{degrees[i]} degrees of freedom. Are I and Q exchanged, or sensors in another order?",
+            ImplausibleStart,
+            stacklevel=3,
+        )
+
+
+def _length(name, seconds, iq):
+    """Return a time in samples."""
+    seconds, most = _checks.moderate_number(name, seconds), iq.x.shape[-1] / iq.fs
+    if not seconds <= most:
+        raise ValueError(f"{name} must be at most the {most:g} s of the record, got {seconds:g}")
+    return round(seconds * iq.fs)
+
+
+def _without_constant(x, valid, iq, until):
+    """Return samples less their mean, or that of as many valid ones as there are `until` then."""
+    if until is None:
+        return remove_mean(x, valid)
+    samples = round((_checks.one_number("dc_until", until, _checks.moderate) - iq.first) * iq.fs)
+    if not 1 <= samples <= x.shape[-1]:
+        raise ValueError(f"dc_until must be within the record, got {until}")
+    early = valid & (np.cumsum(valid, axis=-1) <= samples)
+    constant = np.where(early, x, 0.0).sum(axis=-1, keepdims=True)
+    constant /= np.maximum(early.sum(axis=-1, keepdims=True), 1)
+    return np.where(valid, x - constant, 0.0)
