@@ -126,7 +126,10 @@ class Baseband:
         y, fs_out, delay, *kept = lowpass_decimate(x, fs, factor, taps, valid=valid)
         filling = int(np.ceil(2 * delay * fs_out - 1e-9))
         if not y[..., filling:].size:
-            raise ValueError(f"x must be longer than the low-pass, got {np.shape(x)[-1]} samples")
+            raise ValueError(
+                f"factor must leave samples of x behind the low-pass, got {factor} for "
+                f"{np.shape(x)[-1]} samples and {round(2 * delay * fs) + 1} taps"
+            )
         kept = kept[0][..., filling:] if kept else None
         gain = _noise_gain(fs, factor, round(2 * delay * fs) + 1)
         return cls(y[..., filling:], fs_out, array, delay, filling / fs_out, gain, kept)

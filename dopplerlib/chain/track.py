@@ -121,7 +121,10 @@ class IqTrack:
 
     @property
     def final_nis(self) -> FloatArray:
-        """NIS of the hypothesis that is the likeliest in the end, shape (..., K - used)."""
+        """NIS of the hypothesis that is the likeliest in the end, shape (..., K - used).
+
+        NaN if there is none.
+        """
         return _of_each(self.nis, np.argmin(self.score[..., -1], axis=-1))
 
     def samples_at(self, moment: float) -> int:
@@ -333,10 +336,15 @@ def track_iq(
     degrees = np.isfinite(weights).sum(axis=(1, 2)) - free.sum()
     _warn_unless_plausible(costs, degrees)
     fixed = iq.array, T, used, apart, sigma_p / np.sqrt(T), free
-    each = [
-        filters(z, s, early, *fixed, *starts)
-        for z, s, early, *starts in zip(z, std, weights, states, costs, strict=True)
-    ]
+    try:
+        each = [
+            filters(z, s, early, *fixed, *starts)
+            for z, s, early, *starts in zip(z, std, weights, states, costs, strict=True)
+        ]
+    except np.linalg.LinAlgError:
+        raise ValueError(
+            f"sigma_p must leave something of the noise of shifts to be seen, got {sigma_p:g}"
+        ) from None
     fields = [np.array(field) for field in zip(*each, strict=True)]
     z, std, *fields = (v.reshape((*leading, *v.shape[1:])) for v in (z, std, *fields, degrees))
     return IqTrack(time, known, z, std, used, *fields, sigma_p)

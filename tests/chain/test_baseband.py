@@ -74,7 +74,7 @@ def test_what_does_not_fit_is_refused_by_name():
         with pytest.raises(ValueError, match=message):
             Baseband.from_recording(*arguments)
     for settings, message in [
-        ({"factor": 20}, "x must be longer than the low-pass, got 400 samples"),
+        ({"factor": 20}, "factor must leave samples .*, got 20 for 400 samples and 401 taps"),
         ({"factor": 0}, "factor must be"),
         ({"factor": 2, "taps": 20}, "taps must be odd"),
     ]:

@@ -180,6 +180,7 @@ def test_what_makes_no_sense_is_refused_by_name(room):
         ({"box": BOX[:1]}, r"box must be a pair \(lower, upper\), got 1 bounds"),
         ({"speed_limit": 50}, r"speed_limit must be at most 7.12\d* m/s, .*, got 50"),
         ({"sigma_p": 0}, "sigma_p must be positive, got 0"),
+        ({"sigma_p": 1e8}, "sigma_p must leave something of the noise .*, got 1e[+]08"),
         ({"window": 3.0}, "window must be at most the 1.98 s of the record, got 3"),
         ({"hop": 1e300}, "hop must lie between .*, got 1e[+]300"),
         ({"start": 0.1}, "start must hold at least two windows, got 1 in 0.1 s"),

@@ -104,6 +104,10 @@ def judge(target, call, odd):
         return _refused(target, call, odd, error)
     except Raised:
         return "refused"
+    except Warning as error:
+        if re.search(rf"\b{type(error).__name__}\b", target.doc):
+            return "taken"  # and said
+        raise Bad(_text(target, call, odd, f"{type(error).__name__}: {error}")) from error
     except Hang:
         raise Bad(_text(target, call, odd, f"takes more than {SECONDS} s")) from None
     except Exception as error:
@@ -139,8 +143,9 @@ def _refused(target, call, odd, error):
 
 
 def _components(odd):
-    """Return the fields that were replaced in records."""
-    return [re.match(r"\.(\w+)", each.label)[1] for each in odd.values() if each.nature == "field"]
+    """Return the fields that were replaced in records, and in records in them."""
+    labels = [each.label for each in odd.values() if each.nature == "field"]
+    return [name for label in labels for name in re.findall(r"(?:^|: )\.(\w+)", label)]
 
 
 def _fields(call):
