@@ -143,10 +143,10 @@ def kf(
     F, Q : array_like, shape (n, n) or (K, n, n)
         Transition matrix; covariance of the process noise. At uneven times one for each sample,
         that of the step which leads to it.
-    H : array_like, shape (m, n)
-        Measurement matrix.
-    R : array_like, shape (m, m)
-        Covariance of the measurement noise.
+    H : array_like, shape (m, n) or (K, m, n)
+        Measurement matrix, or one for each sample.
+    R : array_like, shape (m, m) or (K, m, m)
+        Covariance of the measurement noise, or one for each sample.
     x0 : array_like, shape (..., n)
         State one step before the first measurement; leading axes broadcast against those of `z`.
     P0 : array_like, shape (..., n, n)
@@ -179,9 +179,9 @@ def kf(
     """
     x0 = _checks.finite("x0", x0, (None,))
     n = x0.shape[-1]
-    H = _checks.matrix("H", H, (None, n))
-    m = H.shape[0]
-    R = _checks.matrix("R", _checks.covariance("R", R, m), (m, m))
+    H = _checks.finite("H", H, (None, n))
+    m = H.shape[-2]
+    R = _checks.covariance("R", R, m)
     P0 = _checks.covariance("P0", P0, n, definite=False)
     z = _checks.measured("z", z, (None, m))
     if not z.size:
@@ -190,6 +190,8 @@ def kf(
     F = _checks.each_sample("F", _checks.finite("F", F, (n, n)), samples, (n, n))
     Q = _checks.covariance("Q", Q, n, definite=False)
     Q = _checks.each_sample("Q", Q, samples, (n, n))
+    H = _checks.each_sample("H", H, samples, (m, n))
+    R = _checks.each_sample("R", R, samples, (m, m))
 
     # Covariances do not depend on the measurements, only on which are there: runs that begin with
     # one P0 and miss the same share them all.
@@ -205,8 +207,8 @@ def kf(
         return gaussian.predict(x, P, F[k], Q[k])
 
     def correct(k, x, P):
-        innovation = gaussian.innovation(x, z[..., k, :], H)
-        return innovation, *gaussian.gain(P, H, R, seen[..., k, :])
+        innovation = gaussian.innovation(x, z[..., k, :], H[k])
+        return innovation, *gaussian.gain(P, H[k], R[k], seen[..., k, :])
 
     track = recursion.filter_records(x, P, predict, correct, range(samples), len(batch))
     return recursion.finite("F, Q, H, R, x0, P0, z", track)

@@ -9,7 +9,7 @@ from scipy.stats import chi2
 from .. import _checks
 from .._records import record
 from .._typing import ArrayLike, FloatArray
-from ..estimation.linear_kalman import kf_predict, kf_update
+from ..estimation.linear_kalman import kf
 from ..estimation.track import Track
 from ..kernels.doppler import doppler_shift as shift_kernel
 from ..model.doppler import check_clear_of_sensors, doppler_jacobian, doppler_shift
@@ -222,11 +222,9 @@ def _linear_limit(tracker, s, path, before, P0, F, Q, rng):
     track = tracker(
         z[None], s.array, (before + e * offset)[None], e**2 * P0, s.T, e * s.sigma_p, e * s.sigma_f
     )
-    x, P, R, error = offset, P0, s.sigma_f**2 * np.eye(len(s.array)), []
-    for k, H in enumerate(doppler_jacobian(path, s.array)):
-        x, P, _, _ = kf_update(*kf_predict(x, P, F, Q), noise[k], H, R)
-        error.append(x)
-    return _relative((track.x[0] - path) / e, np.array(error))
+    R = s.sigma_f**2 * np.eye(len(s.array))
+    linear = kf(noise, F, Q, doppler_jacobian(path, s.array), R, offset, P0)
+    return _relative((track.x[0] - path) / e, linear.x)
 
 
 def _renamed(tracker, s, z, start, track, settings):

@@ -56,6 +56,20 @@ def test_with_a_linear_model_it_is_the_linear_filter(name, measured):
         assert_close(FILTERS[name](measured), kf(measured, F, Q, H, R, x0, P0), rtol)
 
 
+@pytest.mark.parametrize("which", ["ekf", "cubature"])
+def test_matrices_of_each_sample_are_functions_of_each_sample(which):
+    scale = 1 + 0.1 * np.arange(K)[:, None, None]
+    want = kf(HOLES, F * scale / 2, Q * scale, H * scale, R / scale, x0, P0)
+    move, see = (
+        [lambda x, A=A: x @ A.T for A in matrices] for matrices in (F * scale / 2, H * scale)
+    )
+    each = {"f": move, "Q": Q * scale, "h": see, "R": R / scale}
+    if which == "ekf":
+        each |= {"F": [lambda x, A=A: A for A in F * scale / 2]}
+        each |= {"H": [lambda x, A=A: A for A in H * scale]}
+    assert_close(FILTERS[which](HOLES, **each), want)
+
+
 @pytest.mark.parametrize("name", ["ekf", "cubature"])
 def test_a_singular_start_and_no_process_noise_are_taken(name):
     """One component is known exactly, and stays so where nothing moves."""

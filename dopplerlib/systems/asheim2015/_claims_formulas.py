@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...estimation import gaussian
+from ...estimation.linear_kalman import kf
 from ...estimation.radial_velocity import radial_velocity_terms
 from ...evaluation.verdicts import Readings
 from ...model.range_rate import range_rate, range_rate_jacobian
@@ -86,14 +86,12 @@ def gate_growth(own, early=2, late=450):
     """
     c, sigma = (scenario()["filter"][name] for name in ("c", "sigma_range"))
     F = np.array([[1.0, own.T], [0.0, 1.0]])
-    P, widths = own.P0, []
-    for k in range(late + 1):
-        _, P = gaussian.predict(np.zeros(2), P, F, own.Q)
-        S = P[0, 0] + own.R(1.0)[0]
-        widths.append(np.sqrt(c * sigma / S * S))
-        if k < late - 100:
-            _, P, _ = gaussian.gain(P, np.eye(2), np.diag(own.R(1.0)))
-    return round(float(widths[late] / widths[early]), 9)
+    z = np.zeros((late + 1, 2))
+    z[late - 100 :] = np.nan
+    track = kf(z, F, own.Q, np.eye(2), np.diag(own.R(1.0)), np.zeros(2), own.P0)
+    S = track.S[[early, late], 0, 0]
+    before, after = np.sqrt(c * sigma / S * S)
+    return round(float(after / before), 9)
 
 
 def _range_at(radar, time):

@@ -3,7 +3,8 @@
 import numpy as np
 
 from ... import _checks
-from ...estimation import gaussian
+from ...estimation import gaussian, recursion
+from ...estimation.linear_kalman import kf
 from ...estimation.radial_velocity import radial_velocity_update
 from ...evaluation.intervals import share_interval
 from ...evaluation.verdicts import Draws, Readings
@@ -292,19 +293,14 @@ def gate_on_a_walk(runs, rng):
 
 def _largest_step_difference(z, own):
     """Return how far the pseudo-measurement filter is from a linear one, over a record, in m."""
-    x = x_pseudo = z[0]
-    P = P_pseudo = own.P0
     F, R = np.array([[1.0, own.T], [0.0, 1.0]]), np.diag(own.R(1.0))
-    largest = 0.0
-    for one in z[1:]:
-        x, P = gaussian.predict(x, P, F, own.Q)
-        x, P, _ = gaussian.update(x, P, one - x, np.eye(2), R)
-        x_pseudo, P_pseudo = gaussian.predict(x_pseudo, P_pseudo, F, own.Q)
-        x_pseudo, P_pseudo, _ = gaussian.update(
-            x_pseudo, P_pseudo, one[:1] - x_pseudo[:1], np.eye(2)[:1], R[:1, :1]
-        )
-        x_pseudo, P_pseudo, _, _ = radial_velocity_update(
-            x_pseudo, P_pseudo, one[1], np.sqrt(R[1, 1])
-        )
-        largest = max(largest, float(np.abs(x - x_pseudo).max()))
-    return round(largest, 9)
+
+    def step(k, state):
+        x, P = gaussian.predict(*state, F, own.Q)
+        x, P, _ = gaussian.update(x, P, z[k, :1] - x[:1], np.eye(2)[:1], R[:1, :1])
+        x, P, _, _ = radial_velocity_update(x, P, z[k, 1], np.sqrt(R[1, 1]))
+        return (x, P), (x,)
+
+    (pseudo,) = recursion.scan(step, (z[0], own.P0), range(1, len(z)))
+    linear = kf(z[1:], F, own.Q, np.eye(2), R, z[0], own.P0)
+    return round(float(np.abs(linear.x - pseudo).max()), 9)

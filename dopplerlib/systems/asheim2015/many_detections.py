@@ -49,8 +49,7 @@ def managed_tracks(time, detections, settings, manager=None):
             track["state"], track["P"] = gaussian.predict(track["state"], track["P"], F, settings.Q)
             track["R"] = settings.R(track["state"][0]) * np.eye(2)
             nu = found - track["state"]
-            S = track["P"] + track["R"]
-            nis = np.sum(nu * np.linalg.solve(S, nu.T).T, axis=-1)
+            nis = gaussian.quadratic_forms(nu, track["P"] + track["R"])
             cost[i] = np.where(chi2_gate(nis, 2, settings.gate_probability), nis, np.inf)
         taken = gnn_assign(cost, gate=1e3) if alive and len(found) else [-1] * len(alive)
         for track, j in zip(alive, taken, strict=True):
@@ -69,7 +68,7 @@ def managed_tracks(time, detections, settings, manager=None):
         for j in np.flatnonzero(~np.isfinite(cost).any(axis=0)):
             S = settings.P0 + settings.R(found[j, 0]) * np.eye(2)
             nu = np.reshape([found[j] - other for other in started], (-1, 2))
-            nis = np.sum(nu * np.linalg.solve(S, nu.T).T, axis=-1)
+            nis = gaussian.quadratic_forms(nu, S)
             if chi2_gate(nis, 2, settings.gate_probability).any():
                 continue
             started.append(found[j])
