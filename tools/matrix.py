@@ -19,7 +19,8 @@ ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / ".venv-matrix"
 TRIED = [(3, minor) for minor in range(11, 15)]
 LOCK, MINIMUM = Path("environment.lock"), Path("tests/minimum.lock")
-PYTEST = ["-m", "pytest", "-q", "-n", "logical", "--maxprocesses", "4", "--dist", "loadfile"]
+PYTEST = ["-m", "pytest", "-q", "-n", "logical", "--maxprocesses", "4"]
+PYTEST += ["--dist", "loadfile", "--no-loadscope-reorder"]
 # The chapters and the tools need the packages of the book, and are tried by `make test`.
 TESTS = ["tests", "dopplerlib", "--ignore=tests/book", "--ignore=tests/tools"]
 ASK = (
