@@ -71,7 +71,9 @@ print(*sorted(opened), sep="\\n")
     ours = {
         path.relative_to(ROOT)
         for path in opened
-        if path.suffix not in (".py", ".pyc") and path.is_file() and ".venv" not in path.parts
+        if path.suffix not in (".py", ".pyc")
+        and path.is_file()
+        and not path.relative_to(ROOT).parts[0].startswith(".venv")
     }
     assert ours == {Path("README.md")}
 

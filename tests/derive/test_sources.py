@@ -2,12 +2,14 @@
 
 import difflib
 import os
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import sympy
 
 import dopplerlib
 from dopplerlib.derive import __main__ as command
@@ -21,6 +23,8 @@ SOURCES = kernel_sources()
 @pytest.mark.parametrize("name", SOURCES)
 def test_the_committed_kernel_is_what_is_printed(name):
     committed = (KERNELS / name).read_text(encoding="utf-8")
+    # That of the lock; older ones print the same formulas.
+    committed = re.sub(r"(?<=SymPy )[\d.]+\d", sympy.__version__, committed, count=1)
     if committed != SOURCES[name]:
         lines = difflib.unified_diff(
             committed.splitlines(),
