@@ -9,6 +9,9 @@ from . import model as model
 from . import signal as signal
 from . import systems as systems
 from . import tracking as tracking
+from .chain.baseband import Baseband as Baseband
+from .chain.track import IqTrack as IqTrack
+from .chain.track import track_iq as track_iq
 from .estimation.extended_kalman import ekf as ekf
 from .estimation.extended_kalman import gate_bounds as gate_bounds
 from .estimation.extended_update import ekf_update as ekf_update
@@ -49,6 +52,9 @@ from .model.scenario import Scenario as Scenario
 from .model.simulation import simulate as simulate
 from .signal.frequency import ml_frequency as ml_frequency
 from .signal.laws import crlb_frequency_std as crlb_frequency_std
+from .signal.recording import Recording as Recording
+from .signal.recording import read_sigmf as read_sigmf
+from .signal.recording import read_wav as read_wav
 from .signal.sliding import DopplerRecord as DopplerRecord
 from .signal.sliding import sliding_doppler as sliding_doppler
 from .signal.synthesis import iq_from_geometry as iq_from_geometry
@@ -57,8 +63,11 @@ from .tracking.gates import chi2_gate as chi2_gate
 from .tracking.management import TrackManager as TrackManager
 
 __all__ = [
+    "Baseband",
     "DopplerRecord",
+    "IqTrack",
     "RadarArray",
+    "Recording",
     "Scenario",
     "Start",
     "Table",
@@ -94,6 +103,8 @@ __all__ = [
     "nees",
     "nees_samples",
     "nis",
+    "read_sigmf",
+    "read_wav",
     "ring_family",
     "ring_family_direction",
     "ring_family_limits",
@@ -102,6 +113,7 @@ __all__ = [
     "sliding_doppler",
     "steady_state_gain",
     "steady_state_lag",
+    "track_iq",
     "ukf",
 ]
 __version__: str

@@ -229,11 +229,14 @@ def track_iq(
         Time on the clock in s until which shifts go into the maximum-likelihood start.
     hop : float, optional
         From one window to the next in s; `window` if None. Both are rounded to whole samples.
-    remove_dc, balance : bool
-        Whether a constant is removed, and whether the branches are made equal.
+    remove_dc : bool
+        Whether a constant is removed.
     dc_until : float, optional
         Time on the clock in s until which the mean of the samples is taken for the constant; the
-        whole record if None. An echo that grows has a mean too, most of it from its end.
+        whole record if None. An echo that grows or stands still has a mean too: best is a time
+        before there is any.
+    balance : bool
+        Whether the branches are made equal, see `correct_iq_imbalance`.
     estimator : callable
         What finds the frequency of a window, see `sliding_doppler`.
     inflate : float
@@ -345,9 +348,11 @@ def track_iq(
         raise ValueError(
             f"sigma_p must leave something of the noise of shifts to be seen, got {sigma_p:g}"
         ) from None
-    fields = [np.array(field) for field in zip(*each, strict=True)]
-    z, std, *fields = (v.reshape((*leading, *v.shape[1:])) for v in (z, std, *fields, degrees))
-    return IqTrack(time, known, z, std, used, *fields, sigma_p)
+    fields = z, std, *map(np.array, zip(*each, strict=True)), degrees
+    z, std, x, P, nis, memory, score, degrees = (
+        field.reshape((*leading, *field.shape[1:])) for field in fields
+    )
+    return IqTrack(time, known, z, std, used, x, P, nis, memory, score, degrees, sigma_p)
 
 
 def _of_each(values, chosen):

@@ -156,6 +156,16 @@ def read_sigmf(
     without a time zone is one in UTC, since SigMF knows no other. Data with something other than
     samples among them (a "non-conforming dataset") are refused. The hash is compared if all
     samples are read; of a part it would take longer than reading it.
+
+    Examples
+    --------
+    >>> from dopplerlib import read_sigmf
+    >>> from dopplerlib._data import on_disk
+    >>> files = "simulated_iq.sigmf-meta", "simulated_iq.sigmf-data"
+    >>> with on_disk("mittermaier2016", *files) as folder:
+    ...     recording = read_sigmf(folder / files[0])
+    >>> recording.x.shape, recording.fs
+    ((6, 2001), 2000.0)
     """
     require("sigmf", extra="recordings")
     if carrier is not None:

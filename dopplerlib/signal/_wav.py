@@ -138,6 +138,17 @@ def read_wav(
 
     If I and Q are exchanged, all Doppler shifts have the wrong sign, which the samples do not tell;
     the fit of `ml_start` does.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> from dopplerlib import Recording, read_wav
+    >>> from dopplerlib.signal.recording import write_wav
+    >>> one = Recording([[0.5, 0.5j, -0.5], [0, 0.25, 0.5]], 48e3, carrier=24e9)
+    >>> path = write_wav(Path(mkdtemp()) / "one.wav", one)
+    >>> bool((read_wav(path, carrier=24e9).x == one.x).all())
+    True
     """
     carrier = _checks.positive_number("carrier", carrier)
     alone = not hasattr(start, "__iter__") or isinstance(start, str)

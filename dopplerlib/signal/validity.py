@@ -1,5 +1,7 @@
 """Which samples are measurements: decided on the raw ones, before any mean or filter."""
 
+from typing import overload
+
 import numpy as np
 
 from .. import _checks
@@ -112,9 +114,15 @@ def valid_samples(
     return valid.reshape(shape)
 
 
+@overload
 def known_samples(
-    name: str, x: ArrayLike, valid: ArrayLike | None, shape: tuple[int | None, ...]
-) -> tuple[ComplexArray, BoolArray | None]:
+    name: str, x: ArrayLike, valid: None, shape: tuple[int | None, ...]
+) -> tuple[ComplexArray, None]: ...
+@overload
+def known_samples(
+    name: str, x: ArrayLike, valid: ArrayLike, shape: tuple[int | None, ...]
+) -> tuple[ComplexArray, BoolArray]: ...
+def known_samples(name, x, valid, shape):
     """Return samples with zeros where they are not valid, and the mask.
 
     Parameters

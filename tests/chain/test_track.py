@@ -3,7 +3,9 @@
 Seeds were written down once and are not chosen.
 """
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,9 +17,10 @@ from dopplerlib.chain.baseband import Baseband
 from dopplerlib.chain.track import track_iq
 from dopplerlib.estimation.maximum_likelihood import ImplausibleStart
 from dopplerlib.signal.impairments import add_dc, add_iq_imbalance
-from dopplerlib.signal.recording import Recording, read_sigmf, write_sigmf
+from dopplerlib.signal.recording import Recording, write_sigmf
 from dopplerlib.signal.synthesis import complex_noise
 
+README = Path(__file__).parents[2] / "README.md"
 # A room of 6 m by 5 m, five modules of 10.525 GHz on one wall, a target at a height of 1.2 m.
 PLACES = np.array([[0, 0.5, 1.0], [0, 1.5, 2.0], [0, 2.5, 1.0], [0, 3.5, 2.0], [0, 4.5, 1.0]])
 BOX = [0, 0, 1.2], [6, 5, 1.2]
@@ -39,10 +42,12 @@ def recorded(run):
 
 
 def tracked(meta):
-    recording = read_sigmf(meta)
-    array = RadarArray(PLACES, recording.wavelength)
-    iq = Baseband.from_recording(recording, array, factor=4)
-    return iq, track_iq(iq, BOX, speed_limit=2.5, sigma_p=0.05, window=0.05, start=0.5)
+    """Return samples and track by the lines of the README."""
+    text = README.read_text(encoding="utf-8")
+    (lines,) = re.findall(r"```python\n(.*?track_iq\(.*?)```", text, flags=re.DOTALL)
+    names = {}
+    exec(lines.replace("room.sigmf-meta", meta.as_posix()), names)
+    return names["iq"], names["found"]
 
 
 @pytest.fixture(scope="module")
