@@ -18,7 +18,6 @@ ELSEWHERE = {
     "systems/asheim2015/in_the_plane.py": "two radars within a scan",
     "systems/asheim2015/one_radar.py": "two components of a measurement, as scalars for speed",
     "systems/asheim2015/many_detections.py": "tracks that begin and end",
-    "systems/mittermaier2016/faults.py": "draws paths",
     "tracking/multi_target.py": "tracks that begin and end, scans that come from an iterator",
 }
 

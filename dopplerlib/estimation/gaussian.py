@@ -169,8 +169,6 @@ def gain_of_root(
         If S is singular to rounding.
     """
     K, S, R = _weighed(L, HL, R, there)
-    if not np.all(there):
-        HL = np.where(there[..., None], HL, 0.0)
     return K, _joseph(P, L - K @ HL, K, R, there), S
 
 

@@ -6,7 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dopplerlib import RadarArray, doppler_jacobian, doppler_shift, ekf, ekf_records, kf, ukf
+from dopplerlib import (
+    RadarArray,
+    coordinated_turn,
+    coordinated_turn_jacobian,
+    doppler_jacobian,
+    doppler_shift,
+    ekf,
+    ekf_records,
+    kf,
+    ukf,
+)
 from dopplerlib.estimation.extended_kalman import gate_bounds
 from dopplerlib.model.motion import constant_velocity
 from dopplerlib.model.polar_radar import polar_radar_h, polar_radar_jacobian
@@ -197,6 +207,34 @@ def test_it_is_the_filter_of_the_textbook(name):
     track = ukf(RECORD, **NONLINEAR, **points)
     np.testing.assert_allclose(track.x, x, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(track.P, P, rtol=1e-9, atol=1e-9)
+
+
+def test_the_extended_filter_is_that_of_the_textbook():
+    """Both functions bend, so that it matters at which state a Jacobian is taken."""
+    rng = np.random.default_rng(44)
+    z = polar_radar_h([3.0, 1.0, 6.0, -0.5]) + 0.2 * rng.standard_normal((10, 3))
+    Q, R = 0.05 * np.eye(5), np.diag([0.04, 0.01, 0.04])
+    x0, P0 = np.array([3.2, 6.3, 0.8, -0.7, 0.3]), np.diag([1.0, 1.0, 0.5, 0.5, 0.2])
+    place = [0, 2, 1, 3]  # of [x, v_x, y, v_y] in [x, y, v_x, v_y, omega]
+
+    def H(x):
+        out = np.zeros((*x.shape[:-1], 3, 5))
+        out[..., place] = polar_radar_jacobian(x[..., place])
+        return out
+
+    track = ekf_records(
+        z, lambda x: coordinated_turn(x, 0.5), lambda x: coordinated_turn_jacobian(x, 0.5), Q,
+        lambda x: polar_radar_h(x[..., place]), H, R, x0, P0, wrap=(1,),
+    )  # fmt: skip
+    x, P = x0, P0
+    for k, measured in enumerate(z):
+        F = coordinated_turn_jacobian(x, 0.5)
+        x, P = coordinated_turn(x, 0.5), F @ P @ F.T + Q
+        S = H(x) @ P @ H(x).T + R
+        K_k = P @ H(x).T @ np.linalg.inv(S)
+        x, P = x + K_k @ (measured - polar_radar_h(x[place])), P - K_k @ H(x) @ P
+        np.testing.assert_allclose(track.x[k], x, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(track.P[k], P, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("peer", PEERS["tracks"])

@@ -8,6 +8,7 @@ test finds was put there.
 import numpy as np
 
 from ... import _checks
+from ...estimation import recursion
 from ...model.doppler import doppler_jacobian, doppler_shift
 from ...model.motion import constant_velocity
 from .causes import switched_ekf
@@ -42,11 +43,14 @@ def linear_world(runs, *, rng):
     s = scenario()
     F, _ = constant_velocity(s.T, s.sigma_p)
     pushes = s.sigma_p * rng.standard_normal((runs, s.samples, 3))
-    away = np.empty((runs, s.samples, 6))
-    state = rng.multivariate_normal(np.zeros(6), s.P0, size=runs)
-    for k in range(s.samples):
-        state = state @ F.T + pushes[:, k] @ np.hstack([s.T**2 / 2 * np.eye(3), s.T * np.eye(3)])
-        away[:, k] = state
+    push = np.hstack([s.T**2 / 2 * np.eye(3), s.T * np.eye(3)])
+
+    def step(k, state):
+        state = state @ F.T + pushes[:, k] @ push
+        return state, (state,)
+
+    start = rng.multivariate_normal(np.zeros(6), s.P0, size=runs)
+    (away,) = recursion.scan(step, start, range(s.samples), axis=1)
     z = s.sigma_f * rng.standard_normal((runs, s.samples, len(s.array)))
     z += doppler_shift(s.truth, s.array)
     z += (doppler_jacobian(s.truth, s.array) @ away[..., None])[..., 0]
