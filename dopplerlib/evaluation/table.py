@@ -61,7 +61,7 @@ class Table:
 
     @property
     def cells(self) -> list[list[str]]:
-        """Texts of the table, a list of rows: the head first, the labels in front."""
+        """Texts of the table as a list of rows, the head first, the labels in front."""
         body = [
             [label, *(_text(*one) for one in zip(values, self.digits, strict=True))]
             for label, values in self.rows.items()

@@ -62,8 +62,8 @@ def align(recordings: Iterable[Recording]) -> Recording:
     >>> from datetime import UTC, datetime, timedelta
     >>> from dopplerlib.signal.recording import Recording, align
     >>> noon = datetime(2016, 9, 28, 12, tzinfo=UTC)
-    >>> one = Recording([[0, 1, 2, 3]], 1000.0, 24e9, noon)
-    >>> two = Recording([[4, 5, 6]], 1000.0, 24e9, noon + timedelta(milliseconds=2))
+    >>> one = Recording([[0j, 1, 2, 3]], 1000.0, 24e9, noon)
+    >>> two = Recording([[4 + 0j, 5, 6]], 1000.0, 24e9, noon + timedelta(milliseconds=2))
     >>> align([one, two]).x.real
     array([[2., 3.],
            [4., 5.]])

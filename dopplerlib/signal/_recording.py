@@ -31,7 +31,7 @@ class Recording:
     Raises
     ------
     ValueError
-        If `x` is no array (S, n) of numbers with samples in it, or not finite where `valid` is
+        If `x` is no complex array (S, n) with samples in it, or not finite where `valid` is
         True; if `fs` or `carrier` is not positive; if `start` has no time zone; or if `valid` is
         no array of booleans with the shape of `x`.
 
@@ -58,6 +58,11 @@ class Recording:
 
     def __post_init__(self):
         x = _checks.numbers("x", self.x)
+        if x.dtype.kind != "c":
+            raise ValueError(
+                "x must be complex, I + 1j Q, got real numbers: the readers' layout='real' and "
+                "scipy.signal.hilbert make such samples of a module without Q"
+            )
         if x.ndim != 2 or not x.size:
             raise ValueError(f"x must have shape (S, n) with samples in it, got {x.shape}")
         finite = np.isfinite(x)

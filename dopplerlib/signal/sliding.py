@@ -202,7 +202,7 @@ def sliding_doppler(
     ValueError
         If a valid sample is not finite or beyond 1e140, `window` does not fit into the record or is
         less than 3 (4 with `ml_frequency_dc`), a number is not positive, `tag` is none of the
-        three, or the estimator refuses its arguments.
+        three, or `estimator` is no function or refuses its arguments.
 
     Notes
     -----
@@ -222,7 +222,7 @@ def sliding_doppler(
     if largest > LARGEST:
         raise ValueError(f"x must not exceed {LARGEST:g}, or its square is lost, got {largest:g}")
     fs = _checks.moderate_number("fs", fs)
-    constant = estimator is ml_frequency_dc
+    constant = _checks.function("estimator", estimator) is ml_frequency_dc
     window = _checks.whole_number("window", window, least=4 if constant else 3)
     hop = _checks.whole_number("hop", hop)
     part = _TAGS[_checks.one_of("tag", tag, tuple(_TAGS))]

@@ -32,7 +32,7 @@ def same(a, b):
 
 
 def with_x(recording, x):
-    return replace(recording, x=x, valid=None)
+    return replace(recording, x=np.asarray(x, complex), valid=None)
 
 
 def test_a_recording_tells_times_and_wavelength(recording):
@@ -432,9 +432,11 @@ def test_a_stuck_sensor_is_invalid_and_keeps_its_values():
 @pytest.mark.parametrize(
     "change, message",
     [
-        ({"x": np.ones(5)}, r"x must have shape \(S, n\) with samples in it, got \(5,\)"),
-        ({"x": np.ones((2, 0))}, r"x must have shape \(S, n\) with samples in it, got \(2, 0\)"),
+        ({"x": np.ones(5) + 0j}, r"x must have shape \(S, n\) with samples in it, got \(5,\)"),
+        ({"x": np.ones((2, 0)) + 0j}, r"x must have shape \(S, n\) with samples .*, got \(2, 0\)"),
         ({"x": "IQ"}, "x must be an array of numbers, got 'IQ'"),
+        ({"x": np.ones((2, 5))}, "x must be complex, I .* got real numbers"),
+        ({"x": [[1, 2]]}, "x must be complex, I .* got real numbers"),
         ({"x": None}, "x must be an array of numbers, got None"),
         ({"x": np.ma.masked_array([[1.0]], [[True]])}, "x must not be a masked array"),
         ({"fs": 0.0}, "fs must be positive, got 0.0"),
@@ -449,7 +451,7 @@ def test_a_stuck_sensor_is_invalid_and_keeps_its_values():
         ({"valid": np.ones((3, 40))}, "valid must be an array of booleans"),
         ({"valid": np.ones((3, 39), bool)}, r"valid must have shape \(3, 40\) of x, got \(3, 39\)"),
         (
-            {"x": np.full((3, 40), np.nan), "valid": np.ones((3, 40), bool)},
+            {"x": np.full((3, 40), np.nan + 0j), "valid": np.ones((3, 40), bool)},
             r"x must be finite where valid, got \(?nan.* at index \(0, 0\)",
         ),
     ],
