@@ -60,6 +60,11 @@ compile: $(VENV)/.ready  ## compile all that numba compiles, once for every proc
 test-matrix:  ## test the library with every Python that is found, and with the oldest packages
 	$(PYTHON) -m tools.matrix $(PYTHONS)
 
+# FUZZ_SEED=... tries the same again, FUZZ_FROM=... begins with that function.
+.PHONY: fuzz
+fuzz: $(VENV)/.ready  ## try 10 000 odd arguments on every public function: an hour or so
+	$(PY) -m tests.fuzz $(if $(FUZZ_SEED),--seed $(FUZZ_SEED)) $(if $(FUZZ_FROM),--from $(FUZZ_FROM))
+
 .PHONY: lint
 lint: $(VENV)/.ready  ## check style, formatting and types
 	$(VENV)/bin/ruff check

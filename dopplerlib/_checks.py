@@ -251,7 +251,7 @@ def iterable(name, values, wanted="an iterable"):
         iterator = iter(values)
     except TypeError:
         iterator = None
-    if iterator is None or isinstance(values, str):
+    if iterator is None or isinstance(values, (str, bytes, bytearray, memoryview)):
         raise ValueError(f"{name} must be {wanted}, got {_short(values)}")
     return iterator
 

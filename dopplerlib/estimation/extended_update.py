@@ -142,6 +142,8 @@ def linearized(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the innovation of a nonlinear measurement, and the Jacobian: all that an EKF adds.
 
+    What comes from the caller is unchecked, what the functions return is not.
+
     Parameters
     ----------
     x : ndarray, shape (..., n)

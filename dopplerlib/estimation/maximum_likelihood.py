@@ -79,7 +79,9 @@ class Start:
         than their positions; or the true state is not in the box. With the likelihood "static",
         a target that moves is a reason, too.
         """
-        return self.cost <= IMPLAUSIBLE * np.maximum(self.degrees, 1)
+        cost, degrees = _checks.real("cost", self.cost), _checks.real("degrees", self.degrees)
+        _checks.check_leading(cost=(cost, 0), degrees=(degrees, 0))
+        return cost <= IMPLAUSIBLE * np.maximum(degrees, 1)
 
 
 @_checks.quiet

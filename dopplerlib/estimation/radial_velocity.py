@@ -88,7 +88,9 @@ def radial_velocity_terms(
     sigma = _checks.deviation("sigma", sigma)
     _checks.one_of("variance", variance, ("corrected", "printed"))
     _checks.check_leading(x=(x, 1), P=(P, 2), sigma=(sigma, 0))
-    return _terms(x, P, sigma, variance)
+    terms = _terms(x, P, sigma, variance)
+    _checks.estimates("x, P, sigma", *vars(terms).values(), what="terms")
+    return terms
 
 
 @_checks.quiet

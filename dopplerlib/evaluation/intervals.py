@@ -43,7 +43,10 @@ class Estimate:
 
     @property
     def half_width(self) -> float:
-        """Half the length of the interval: what stands after ± where it is nearly symmetric."""
+        """Half the length of the interval: what stands after ± where it is nearly symmetric.
+
+        It is infinite if an end is.
+        """
         return (self.high - self.low) / 2
 
     def __str__(self):

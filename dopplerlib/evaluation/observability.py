@@ -167,6 +167,17 @@ def confusion(
     The log-likelihood ratio of two given states is normal with mean D^2 / 2 and variance D^2,
     where D^2 is the chi-square by which the states' measurements differ. So the chance is the
     normal distribution at -D / 2. It leaves out that both optima move with the noise.
+
+    Examples
+    --------
+    A flight past the ring and its best rival in the box, after five samples:
+
+    >>> from dopplerlib import RadarArray
+    >>> box = [0.5, -0.3, -0.3, -1.0, -0.5, -0.5], [1.2, 0.3, 0.3, -0.3, 0.5, 0.5]
+    >>> x = [0.8, 0.1, 0.1, -0.7, 0.0, 0.0]
+    >>> rival, share = confusion(x, RadarArray.ring(6, 0.2), 0.4, 5, 0.01, box)
+    >>> round(share, 2)
+    0.43
     """
     x = _checks.moderate("x", x, (6,))
     if x.ndim != 1:

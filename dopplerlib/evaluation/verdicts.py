@@ -185,7 +185,7 @@ def judge_all(claims: Iterable[Claim], evidence: dict[str, Any]) -> tuple[Judgme
     """
     claims = _checks.records("claims", claims, Claim)
     _checks.instance("evidence", evidence, dict)
-    names = [claim.id for claim in claims]
+    names = [_checks.text("id of a claim", claim.id, least=1) for claim in claims]
     for name in names:
         if name not in evidence:
             raise ValueError(f"evidence must hold every claim, got none for {name!r}")

@@ -63,7 +63,7 @@ def acceleration_gain(
     """Return G of shape (..., 6, 1) or (..., 6, 3), and sigma_p as a float (Eq 9).
 
     Raises ValueError unless sigma_p and noise are those of `constant_velocity`, and sigma_p^2 G G',
-    which is Q, is finite. T is an array that was checked.
+    which is Q, is finite. `T` itself is unchecked.
     """
     sigma_p = _checks.one_number("sigma_p", sigma_p, _checks.deviation)
     axes = _AXES[_checks.one_of("noise", noise, tuple(_AXES))]

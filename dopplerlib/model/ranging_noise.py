@@ -145,6 +145,7 @@ def detection_probability(snr_db: ArrayLike, false_alarm: float) -> FloatArray:
     """
     from scipy.stats import ncx2  # here: it takes longer to load than all the rest
 
-    snr_db = _checks.decibels("snr_db", snr_db)
+    # Beyond 60 dB an echo passes any threshold, and SciPy's series is lost.
+    snr_db = np.minimum(_checks.decibels("snr_db", snr_db), 60.0)
     threshold = -2 * np.log(_checks.probability("false_alarm", false_alarm))
     return ncx2.sf(threshold, 2, 2 * 10 ** (snr_db / 10))

@@ -70,7 +70,9 @@ def lowpass(x, fs, cutoff, taps, valid=None):
     if not cutoff < fs / 2:
         raise ValueError(f"cutoff must be less than fs / 2 = {fs / 2:g}, got {cutoff:g}")
     b = signal.firwin(taps, cutoff, fs=fs)
-    y = signal.oaconvolve(x, b.reshape((1,) * (x.ndim - 1) + (-1,)), axes=-1)
+    with np.errstate(all="ignore"):
+        y = signal.oaconvolve(x, b.reshape((1,) * (x.ndim - 1) + (-1,)), axes=-1)
+    _checks.estimates("x", y, what="filtered samples")
     y, delay = y[..., : x.shape[-1]], (taps - 1) / 2 / fs
     return (y, delay) if valid is None else (y, delay, _filtered(valid, taps))
 

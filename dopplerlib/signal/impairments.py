@@ -43,6 +43,7 @@ def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     return x
 
 
+@_checks.quiet
 def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
     """Return IQ samples less their mean over the last axis.
 
@@ -77,10 +78,13 @@ def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
     if not x.size:
         return x
     if valid is None:
-        return about_mean(x)
+        x = about_mean(x)
+        _checks.estimates("x", x, what="mean")
+        return x
     first = np.take_along_axis(x, valid.argmax(axis=-1, keepdims=True), axis=-1)
     x = np.where(valid, x - first, 0.0)
     mean = x.sum(axis=-1, keepdims=True) / np.maximum(valid.sum(axis=-1, keepdims=True), 1)
+    _checks.estimates("x", mean, what="mean")
     return np.where(valid, x - mean, 0.0)
 
 

@@ -10,6 +10,7 @@ from ._bins import sum_of_ones
 _VARIANCE = 6 / (2 * np.pi) ** 2
 
 
+@_checks.quiet
 def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: float) -> FloatArray:
     """Return the smallest standard deviation of an unbiased estimate of a tone's frequency.
 
@@ -45,9 +46,14 @@ def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: float) -> FloatArray:
     n = _checks.positive("n", n)
     if (n < 2).any():
         raise ValueError(f"n must be at least 2, got {n.min():g}")
-    return _checks.positive_number("fs", fs) * np.sqrt(_VARIANCE / (snr * n * (n**2 - 1)))
+    _checks.check_leading(snr=(snr, 0), n=(n, 0))
+    fs = _checks.positive_number("fs", fs)
+    bound = fs * np.sqrt(_VARIANCE / snr / n / (n**2 - 1))
+    _checks.estimates("snr, n, fs", bound, what="bound")
+    return bound
 
 
+@_checks.quiet
 def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> FloatArray:
     """Return the smallest standard deviation of such an estimate beside an unknown constant.
 
@@ -86,17 +92,20 @@ def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> Fl
     [0.75, 0.37, 0.31]
     """
     f, snr = _checks.finite("f", f), _checks.positive("snr", snr)
-    n, fs = _checks.positive("n", n), _checks.positive_number("fs", fs)
+    n, fs = _checks.moderate("n", n), _checks.positive_number("fs", fs)
     if (n < 3).any():
         raise ValueError(f"n must be at least 3, got {n.min():g}")
-    with np.errstate(divide="ignore", invalid="ignore"):
-        D, slope, _ = sum_of_ones(f * n / fs, n)
-        imitated = n * (slope * n / (2 * np.pi)) ** 2 / (n**2 - D**2)
-        kept = 1 - imitated * 12 / (n * (n**2 - 1))
-        factor = np.where(kept > 0, 1 / np.sqrt(kept), np.inf)
+    _checks.check_leading(f=(f, 0), snr=(snr, 0), n=(n, 0))
+    cycles = f * n / fs
+    _checks.estimates("f, n, fs", cycles, what="cycles in a window")
+    D, slope, _ = sum_of_ones(cycles, n)
+    imitated = n * (slope * n / (2 * np.pi)) ** 2 / (n**2 - D**2)
+    kept = 1 - imitated * 12 / (n * (n**2 - 1))
+    factor = np.where(kept > 0, 1 / np.sqrt(kept), np.inf)
     return crlb_frequency_std(snr, n, fs) * factor
 
 
+@_checks.quiet
 def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
     """Return the length of the window in which a tone's frequency can be known so well.
 
@@ -127,9 +136,13 @@ def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
     21.2
     """
     std, cn0 = _checks.positive("std", std), _checks.positive("cn0", cn0)
-    return np.cbrt(_VARIANCE / (cn0 * std**2))
+    _checks.check_leading(std=(std, 0), cn0=(cn0, 0))
+    length = np.cbrt(_VARIANCE / std / std / cn0)
+    _checks.estimates("std, cn0", length, what="length")
+    return length
 
 
+@_checks.quiet
 def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
     """Return the signal-to-noise ratio of a whole window that such an estimate needs.
 
@@ -160,9 +173,13 @@ def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
     59.8
     """
     std, T = _checks.positive("std", std), _checks.positive("T", T)
-    return _VARIANCE / (std * T) ** 2
+    _checks.check_leading(std=(std, 0), T=(T, 0))
+    snr = _VARIANCE / (std * T) ** 2
+    _checks.estimates("std, T", snr, what="ratio")
+    return snr
 
 
+@_checks.quiet
 def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatArray:
     """Return how often noise makes a higher peak than the tone does.
 
@@ -195,7 +212,8 @@ def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatAr
     """
     from scipy.special import ive
 
-    s = _checks.positive("integrated_snr", integrated_snr)[..., None]
+    # From far below the limit on, exp(-a^2) is zero, and so is the probability.
+    s = np.minimum(_checks.positive("integrated_snr", integrated_snr), 1e6)[..., None]
     candidates = _checks.positive_number("candidates", candidates)
     if candidates < 2:
         raise ValueError(f"candidates must be at least 2, got {candidates:g}")
@@ -233,8 +251,8 @@ def overlap_correlation(tau: ArrayLike) -> FloatArray:
     >>> overlap_correlation([0, 0.5, 0.75, 1]).tolist()
     [1.0, -0.25, -0.40625, 0.0]
     """
-    tau = np.abs(_checks.finite("tau", tau))
-    return np.where(tau < 1, 1 - 3 * tau + 2 * tau**3, 0.0)
+    tau = np.minimum(np.abs(_checks.finite("tau", tau)), 1.0)
+    return 1 - 3 * tau + 2 * tau**3
 
 
 def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
@@ -268,12 +286,13 @@ def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
     [1.0, 0.88, -0.25, 0.0]
     """
     n = _checks.whole_number("n", n, least=2)
-    lag = np.abs(_checks.finite("lag", lag))
-    m = np.maximum(n - lag, 0)
+    lag = np.minimum(np.abs(_checks.finite("lag", lag)), n)
+    m = n - lag
     products = np.where(m > 0, m * (m**2 - 1 - 3 * lag**2), 0.0)
     return products / (n * (n**2 - 1))
 
 
+@_checks.quiet
 def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
     """Return the best length of a window whose estimate is used as the frequency at its end.
 
@@ -305,9 +324,13 @@ def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
     20.5
     """
     cn0, chirp = _checks.positive("cn0", cn0), _nonzero("chirp", chirp)
-    return (6 * _VARIANCE / (cn0 * chirp**2)) ** (1 / 5)
+    _checks.check_leading(cn0=(cn0, 0), chirp=(chirp, 0))
+    length = (6 * _VARIANCE / cn0 / chirp / chirp) ** (1 / 5)
+    _checks.estimates("cn0, chirp", length, what="length")
+    return length
 
 
+@_checks.quiet
 def optimal_window_center(cn0: ArrayLike, curvature: ArrayLike) -> FloatArray:
     """Return the best length of a window whose estimate is used as the frequency at its middle.
 
@@ -339,7 +362,10 @@ def optimal_window_center(cn0: ArrayLike, curvature: ArrayLike) -> FloatArray:
     68.8
     """
     cn0, curvature = _checks.positive("cn0", cn0), _nonzero("curvature", curvature)
-    return (1200 * _VARIANCE / (cn0 * curvature**2)) ** (1 / 7)
+    _checks.check_leading(cn0=(cn0, 0), curvature=(curvature, 0))
+    length = (1200 * _VARIANCE / cn0 / curvature / curvature) ** (1 / 7)
+    _checks.estimates("cn0, curvature", length, what="length")
+    return length
 
 
 def _nonzero(name, value):

@@ -125,6 +125,8 @@ def known_samples(
 def known_samples(name, x, valid, shape):
     """Return samples with zeros where they are not valid, and the mask.
 
+    `name` and `shape` come from a function that calls it, and are unchecked.
+
     Parameters
     ----------
     name : str

@@ -81,7 +81,8 @@ class TrackManager:
     def __post_init__(self):
         """Check the rules."""
         for name in ("hits", "window", "delete_after"):
-            _checks.whole_number(name, getattr(self, name))
+            value = _checks.whole_number(name, getattr(self, name))
+            object.__setattr__(self, name, value)
         if self.hits > self.window:
             raise ValueError(f"hits must be at most window = {self.window}, got {self.hits}")
 

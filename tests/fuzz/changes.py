@@ -46,7 +46,7 @@ VALUES = [
     changed("bool", "a.astype(bool)"),
     changed("date", "a.astype('m8[s]')"),
     changed("masked", "np.ma.masked_array(a, np.arange(a.size).reshape(a.shape) == 0)"),
-    changed("masked", "[np.ma.masked_array(row, np.ones(np.shape(row), bool)) for row in a]"),
+    changed("masked", "[np.ma.masked_array(row, True) for row in np.atleast_1d(a)]"),
     changed("object", "[*a.tolist()[:-1], None] if a.ndim else object()"),
     changed("unit", "a.astype(float).view(Quantity) if a.dtype.kind in 'iuf' else Pint(a)"),
     changed("unit", "Pint(a)"),
@@ -56,7 +56,7 @@ VALUES = [
 
 def narrow(a, kind):
     """Return `a` in a narrower type if no digit is lost, and as it is otherwise."""
-    if a.dtype.kind not in "iuf":
+    if a.dtype.kind not in "iuf" or (a.dtype.kind != "f" and np.dtype(kind).kind == "f"):
         return a
     with np.errstate(all="ignore"):
         less = a.astype(kind)
@@ -105,7 +105,6 @@ REPRESENTATIONS += [
         "Duck(a)",
         "(row for row in a)",
         "iter(a.tolist())",
-        "np.asmatrix(a) if a.ndim == 2 else a",
     )
 ]
 WHOLE = [
@@ -130,6 +129,23 @@ TEXTS = [
     Odd("in an array", lambda valid: np.array([valid]), "container"),
     Odd("np.str_", np.str_, "same", None),
 ]
+PATHS = [
+    Odd("str(valid)", str, "same", True),
+    Odd("the folder", lambda valid: valid.parent, "path"),
+    Odd("missing", lambda valid: valid.with_name("missing"), "path"),
+    Odd("below a file", lambda valid: valid.parent / "walk.wav" / "x", "path"),
+    Odd("a FIFO", lambda valid: valid.with_name("fifo"), "path"),
+    Odd("a device", lambda valid: "/dev/null", "path"),
+    Odd("no end", lambda valid: "/dev/zero", "path"),
+    Odd("another kind", lambda valid: valid.with_name("other"), "path"),
+    Odd("with NUL", lambda valid: f"{valid}\0", "path"),
+    Odd("a surrogate", lambda valid: f"{valid}\udcff", "path"),
+    Odd("empty", lambda valid: "", "path"),
+    Odd("bytes", bytes, "same", None),
+    Odd("in a list", lambda valid: [valid], "same", None),
+    Odd("in an iterator", lambda valid: iter([valid]), "same", None),
+    Odd("twice", lambda valid: [valid, valid], "path"),
+]
 SEQUENCES = [
     Odd("iter(valid)", iter, "same", None),
     Odd("(item for item in valid)", lambda valid: (item for item in valid), "same", None),
@@ -140,9 +156,21 @@ SEQUENCES = [
 ]
 
 
+def _passing(function):
+    """Let what a callable itself raises pass: it is not an error of the function that calls it."""
+
+    def called(*args, **kwargs):
+        try:
+            return function(*args, **kwargs)
+        except Exception as error:
+            raise Raised from error
+
+    return called
+
+
 def _returning(text):
     function = eval(f"lambda result: {text}", NAMES)
-    return lambda valid: lambda *args, **kwargs: function(valid(*args, **kwargs))
+    return lambda valid: _passing(lambda *args, **kwargs: function(valid(*args, **kwargs)))
 
 
 def _raising(valid):
@@ -176,7 +204,11 @@ CALLABLES = [
 ]
 CALLABLES += [
     Odd("lambda: raise", _raising, "result"),
-    Odd("lambda: (no arguments)", lambda valid: lambda: None, "result"),
+    Odd("lambda: (no arguments)", lambda valid: _passing(lambda: None), "result"),
+    *(
+        Odd(function.__name__, lambda valid, f=function: _passing(f), "result")
+        for function in (len, abs, int, dict, str)
+    ),
 ]
 
 

@@ -1,6 +1,7 @@
 """Strategies for odd calls: which argument of a valid call is replaced, and by what."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 from hypothesis import strategies as st
@@ -41,9 +42,12 @@ def odd_values(value):
         parts += map(st.sampled_from, kinds)
     elif isinstance(value, str):
         parts += [st.sampled_from(changes.TEXTS), st.text(max_size=8).map(_just)]
+    elif isinstance(value, Path):
+        parts.append(st.sampled_from(changes.PATHS))
     elif dataclasses.is_dataclass(value):
         parts += [_fields(value)] * 3
     elif callable(value):
+        parts = [st.sampled_from([odd for odd in CONSTANTS if not callable(odd.make(None))])]
         parts.append(st.sampled_from(changes.CALLABLES))
     elif isinstance(value, (list, tuple)) and len(value):
         parts += [_items(value), st.sampled_from(changes.SEQUENCES)]

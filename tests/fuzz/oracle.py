@@ -8,6 +8,7 @@ import math
 import re
 import signal
 import warnings
+from pathlib import Path
 
 import numpy as np
 
@@ -101,7 +102,7 @@ def judge(target, call, odd):
             warnings.simplefilter("error")
             result = invoke(target, arguments)
     except (ValueError, TypeError) as error:
-        return _refused(target, call, odd, error)
+        return _refused(target, call, odd, error, arguments)
     except Raised:
         return "refused"
     except Warning as error:
@@ -128,12 +129,15 @@ def _frozen(value):
     return None
 
 
-def _refused(target, call, odd, error):
+def _refused(target, call, odd, error, arguments=()):
     message = str(error)
     if any(each.same for each in odd.values()) and len(odd) == 1 and not target.record:
         raise Bad(_text(target, call, odd, f"not taken: {message}")) from error
     names = [name for name in odd if name != "self"]
     names += _components(odd)
+    # What is wrong with a file is told by its name.
+    paths = {key: value for key, value in dict(arguments).items() if key in ("path", "paths")}
+    names += [Path(value).name for value in paths.values() if isinstance(value, (str, Path))]
     named = any(re.search(rf"\b{re.escape(name)}\b", message) for name in names)
     first = re.match(r"[\"']?([A-Za-z_]\w*)", message)
     known = {*target.kinds, *call, *_fields(call)}
@@ -149,12 +153,11 @@ def _components(odd):
 
 
 def _fields(call):
-    return {
-        field.name
-        for name, value in call.items()
-        if name == "self" and dataclasses.is_dataclass(value)
-        for field in dataclasses.fields(value)
-    }
+    """Return the names of the fields of all records among the arguments, also in sequences."""
+    values = list(call.values())
+    values += [item for value in values if isinstance(value, (list, tuple)) for item in value]
+    records = [value for value in values if dataclasses.is_dataclass(value)]
+    return {field.name for record in records for field in dataclasses.fields(record)}
 
 
 def _check_taken(target, call, odd, result):

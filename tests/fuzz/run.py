@@ -8,14 +8,22 @@ from collections import Counter
 from dataclasses import dataclass
 
 import hypothesis
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
 
+from . import valid_files
 from .oddities import odd_calls
 from .oracle import Bad, baseline, judge
 
 MEMORY = 4 * 2**30  # bytes of address space that odd calls may use beside what is in use
 MOST_SHRUNK = 4
-OPTIONS = settings(deadline=None, database=None, suppress_health_check=list(HealthCheck))
+BATCH = 10  # odd calls that are drawn together: Hypothesis takes longer to begin than to draw
+OPTIONS = settings(
+    deadline=None,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+    phases=[Phase.generate, Phase.shrink],
+)
 
 
 @dataclass(frozen=True)
@@ -39,17 +47,18 @@ def fuzz(target, examples, seed=None):
     counts, kinds = Counter(), {}
     strategy = odd_calls(calls)
 
-    @settings(OPTIONS, max_examples=examples, derandomize=seed is None)
-    @given(strategy)
-    def try_all(drawn):
-        kind, text = _try(target, drawn)
-        counts["bad" if text else kind] += 1
-        if text:
-            kinds[kind] = min(kinds.get(kind, text), text, key=len)
+    @settings(OPTIONS, max_examples=-(-examples // BATCH), derandomize=seed is None)
+    @given(st.tuples(*[strategy] * BATCH))
+    def try_all(batch):
+        for drawn in batch:
+            kind, text = _try(target, drawn)
+            counts["bad" if text else kind] += 1
+            if text:
+                kinds[kind] = min(kinds.get(kind, text), text, key=len)
 
     if seed is not None:
         try_all = hypothesis.seed(seed)(try_all)
-    with _bounded_memory():
+    with bounded_memory(), contextlib.chdir(valid_files.folder()):
         try_all()
         for kind in list(kinds)[:MOST_SHRUNK]:
             kinds[kind] = _shrunk(target, strategy, kind) or kinds[kind]
@@ -89,7 +98,7 @@ def _shrunk(target, strategy, kind):
 
 
 @contextlib.contextmanager
-def _bounded_memory():
+def bounded_memory():
     """Let no odd size take the machine's memory: it becomes a MemoryError, which is bad."""
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     with open("/proc/self/statm") as file:

@@ -18,11 +18,13 @@ from importlib import import_module
 
 import numpy as np
 
+from . import valid_files
+
 SECTION = re.compile(r"^(\w[\w ]*)\n-+\n", flags=re.MULTILINE)
 ENTRY = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.MULTILINE)
-PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "derive")
+PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation")
 # How a docstring says that arguments are checked elsewhere: such a function promises nothing.
-UNCHECKED = re.compile(r"\bunchecked\b|\bnot checked\b", flags=re.IGNORECASE)
+UNCHECKED = re.compile(r"\bunchecked\b|\bnot checked\b|nothing is checked", flags=re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class Target:
     kinds: dict  # {argument: type as its docstring gives it}
     doc: str
     optional: frozenset  # arguments that may be None because that is their default
+    owner: type | None  # the class whose method or property it is
 
     @property
     def record(self):
@@ -42,29 +45,36 @@ class Target:
     @property
     def calls(self):
         """Valid calls, as {argument: value}."""
-        package = f"dopplerlib.{self.name.partition('.')[0]}"
-        return trace(package).get(_key(self.function), [])
+        traced = trace(f"dopplerlib.{self.name.partition('.')[0]}")
+        if self.owner and not traced.get(_key(self.function)) and len(self.parameters) == 1:
+            made = traced.get(_key(self.owner), [])  # of a property, any record is a call
+            return [{"self": self.owner(**call)} for call in made]
+        return traced.get(_key(self.function), [])
+
+    @property
+    def parameters(self):
+        return inspect.signature(self.function).parameters
 
     def kind(self, argument):
         """Return the type of an argument as it is documented, or as it is."""
         return self.kinds.get(argument) or _kind(self.calls[0].get(argument))
 
 
-def modules(package):
-    """Return the public modules under `package`, imported."""
+def modules(package, private=False):
+    """Return the public modules under `package`, imported; the others as well if `private`."""
     top = import_module(package)
     names = [package]
     if hasattr(top, "__path__"):
         names += [found.name for found in pkgutil.walk_packages(top.__path__, f"{package}.")]
-    return [import_module(name) for name in names if "._" not in name]
+    return [import_module(name) for name in names if private or "._" not in name]
 
 
 def public(module):
     """Yield (name, object) of what a module offers: what stands in it or is in its ``__all__``."""
     for name, value in vars(module).items():
-        here = getattr(value, "__module__", None) == module.__name__
-        offered = name in vars(module).get("__all__", ()) if not here else True
-        if offered and callable(value) and not name.startswith("_"):
+        home = getattr(value, "__module__", None) or ""
+        offered = "._" in home and name in vars(module).get("__all__", ())
+        if callable(value) and (home == module.__name__ or offered) and not name.startswith("_"):
             yield name, value
 
 
@@ -106,20 +116,20 @@ def discover(package):
             if UNCHECKED.search(inspect.getdoc(value) or "") or _is_error(value):
                 continue
             path = f"{module.__name__.partition('.')[2]}.{name}"
-            found[path] = value
+            found[path] = value, None
             if inspect.isclass(value):
-                found |= {f"{path}.{member}": f for member, f in members(value)}
-    return [_target(name, function) for name, function in sorted(found.items())]
+                found |= {f"{path}.{member}": (f, value) for member, f in members(value)}
+    return [_target(name, *each) for name, each in sorted(found.items())]
 
 
 def _is_error(value):
     return inspect.isclass(value) and issubclass(value, BaseException)
 
 
-def _target(name, function):
+def _target(name, function, owner):
     parameters = inspect.signature(function).parameters
     optional = frozenset(key for key, each in parameters.items() if each.default is None)
-    return Target(name, function, kinds(function), inspect.getdoc(function) or "", optional)
+    return Target(name, function, kinds(function), inspect.getdoc(function) or "", optional, owner)
 
 
 def _kind(value):
@@ -154,13 +164,17 @@ def trace(package, most=3):
                     _wrap_class(value, calls, stack)
                 elif inspect.isfunction(value):
                     _replace(module, name, _recorder(value, calls), stack)
-        for module in modules(package):
+        for module in modules(package, private=True):
             for test in doctest.DocTestFinder().find(module):
                 if test.examples:
                     test.globs = dict(test.globs)
                     runner = doctest.DocTestRunner(verbose=False)
                     # The names stay: functions that an example defines need them when called again.
                     runner.run(test, out=lambda text: None, clear_globs=False)
+        for function, call in valid_files.calls().items():
+            if function.__module__.startswith(package):
+                calls.setdefault(_key(function), []).append(call)
+                function(**call)
     return {key: _smallest(found, most) for key, found in calls.items()}
 
 

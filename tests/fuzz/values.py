@@ -104,6 +104,6 @@ CONSTANTS = [
     *_constants("masked", "np.ma.masked", "np.ma.masked_less([-1.0, 2.0], 0)"),
     *_constants("masked", "[np.ma.masked_less([-1.0, 2.0], 0), [1.0, 2.0]]"),
     *_constants("unit", "Quantity((2,))", "Pint([1.0, 2.0])", "[Pint(1.0)]"),
-    *_constants("path", "pathlib.Path('/nowhere')", "'/dev/null/x'", "'a' * 5000"),
+    *_constants("path", "pathlib.Path('/nowhere/at/all')", "'/dev/null/x'", "'a' * 5000"),
     *_constants("callable", "len", "abs", "dict", "int.__add__"),
 ]  # fmt: skip

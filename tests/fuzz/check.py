@@ -1,0 +1,20 @@
+"""The test that each test file of this folder runs on the functions of one package."""
+
+import pytest
+
+from .run import fuzz
+from .targets import discover
+
+EXAMPLES = 200  # odd calls of each function, the same ones every time
+
+
+def of_package(package):
+    """Return a test, for each public function of a package of the library, of odd calls."""
+    targets = discover(f"dopplerlib.{package}")
+
+    @pytest.mark.parametrize("target", targets, ids=lambda target: target.name)
+    def test_odd_arguments_are_refused_by_name_or_give_finite_results(target):
+        outcome = fuzz(target, EXAMPLES)
+        assert not outcome.bad, "\n".join(outcome.bad)
+
+    return test_odd_arguments_are_refused_by_name_or_give_finite_results
