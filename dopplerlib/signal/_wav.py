@@ -144,7 +144,6 @@ def read_wav(
     >>> from pathlib import Path
     >>> from tempfile import mkdtemp
     >>> from dopplerlib import Recording, read_wav
-    >>> from dopplerlib.signal.recording import write_wav
     >>> one = Recording([[0.5, 0.5j, -0.5], [0, 0.25, 0.5]], 48e3, carrier=24e9)
     >>> path = write_wav(Path(mkdtemp()) / "one.wav", one)
     >>> bool((read_wav(path, carrier=24e9).x == one.x).all())

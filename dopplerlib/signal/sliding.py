@@ -268,7 +268,12 @@ def _by_call(records, fs, n, firsts, estimator, band):
         part = slice(a, a + step)
         x = windows[rows[part], starts[part]]
         with np.errstate(divide="ignore", invalid="ignore"):  # windows of zeros
-            found = estimator(x, fs, band)
+            found = _checks.called("estimator", estimator, x, fs, band)
+        found = _checks.real("what estimator returns", found)
+        if found.shape != x.shape[:-1]:
+            raise ValueError(
+                f"what estimator returns must have shape {x.shape[:-1]}, got {found.shape}"
+            )
         found = np.where(np.isfinite(found) & ~still[part], found, np.nan)
         if constant:
             x = about_mean(x)

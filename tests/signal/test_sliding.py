@@ -272,3 +272,17 @@ def test_what_makes_no_sense_is_refused_by_name(x):
         arguments = {"x": x, "fs": FS, "window": WINDOW, "hop": HOP} | kwargs
         with pytest.raises(ValueError, match=message):
             sliding_doppler(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("estimator", "message"),
+    [
+        (1, "estimator must be a function, got 1"),
+        (lambda x: x, r"estimator must take 3 argument\(s\), got a function with"),
+        (lambda x, fs, band: 1.0, r"what estimator returns must have shape \(4,\), got \(\)"),
+        (lambda x, fs, band: "text", "what estimator returns must be an array of real numbers"),
+    ],
+)
+def test_what_does_not_estimate_frequencies_is_refused_by_name(estimator, message):
+    with pytest.raises(ValueError, match=message):
+        sliding_doppler(np.ones((1, 20)), 1e3, 5, 5, estimator)
