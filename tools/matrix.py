@@ -1,8 +1,8 @@
 """Run the tests of the library with every Python that is found, and with the oldest packages.
 
-Every Python gets the packages of environment.lock in an environment of its own; the oldest one that
-is found also gets those of tests/minimum.lock, the least that pyproject.toml allows. Each has one
-line of result; a failure does not keep the rest from being tried.
+Every Python gets the packages of environment.lock in an environment of its own. The oldest that is
+supported also gets those of tests/minimum.lock, the least that pyproject.toml allows: newer ones
+have no such packages. Each has one line of result; a failure keeps nothing from being tried.
 """
 
 import json
@@ -76,7 +76,7 @@ def main(argv=None):
     if absent:
         print("not found: CPython", ", ".join(absent), file=sys.stderr)
     runs = [(*python, LOCK) for python in found.values()]
-    runs += [(version, program, MINIMUM) for version, program, _ in runs[:1]]
+    runs += [(*found[key], MINIMUM) for key in TRIED[:1] if key in found]
     failed = not runs
     with alone(FOLDER / ".lock", "the matrix"):
         for number, (version, program, lock) in enumerate(runs, start=1):
