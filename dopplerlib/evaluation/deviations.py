@@ -51,7 +51,7 @@ class Deviations:
     Raises
     ------
     ValueError
-        If an entry is no `Deviation`.
+        If an entry is no `Deviation`, or one of an unknown kind.
 
     Examples
     --------
@@ -64,6 +64,8 @@ class Deviations:
     def __post_init__(self):
         """Check the fields."""
         entries = _checks.records("entries", self.entries, Deviation)
+        for one in entries:
+            _checks.one_of("kind of an entry", one.kind, KINDS)
         object.__setattr__(self, "entries", entries)
 
     def __repr__(self):
