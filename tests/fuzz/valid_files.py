@@ -1,7 +1,9 @@
 """Valid calls that no docstring can show, since they need files: made in a folder of their own."""
 
+import atexit
 import functools
 import os
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -84,6 +86,7 @@ cell = "table1"
 def folder():
     """Return a folder with valid files and a FIFO; relative paths lead into it as well."""
     folder = Path(tempfile.mkdtemp(prefix="fuzz-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     write_sigmf(folder / "walk", RECORDING)
     write_wav(folder / "walk.wav", RECORDING)
     for name, text in (("scenario", SCENARIO), ("claims", CLAIMS), ("deviations", DEVIATIONS)):
