@@ -31,7 +31,7 @@ def part_calls(dl, np):
         "estimation": lambda: dl.kf_update([0.0], one, [1.0], one, one)[0],
         "estimation, compiled": lambda: filtered(dl, np),
         "tracking": lambda: dl.gnn_assign([[1.0, 2.0], [3.0, 0.5]], 4.0)[0],
-        "chain": lambda: dl.chain.baseband.Baseband.from_samples(np.ones((6, 500)), 1e3, ring).x,
+        "chain": lambda: dl.chain.baseband.Baseband.from_samples(np.ones((6, 500)), 1e3, ring).fs,
         "evaluation": lambda: dl.chi2_interval(6),
         "evaluation, claims": lambda: judged(dl, rng),
         "asheim2015": lambda: s.asheim2015.deviations([1.0, 2.0]),
