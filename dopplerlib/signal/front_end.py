@@ -132,10 +132,10 @@ def lowpass_decimate(x, fs, factor, taps=None, valid=None):
     """
     factor = _checks.whole_number("factor", factor)
     fs = _checks.moderate_number("fs", fs)
+    taps = 20 * factor + 1 if taps is None else _checks.whole_number("taps", taps)
     if factor == 1:
         x, valid = known_samples("x", x, valid, (None,))
         return (x, fs, 0.0) if valid is None else (x, fs, 0.0, valid)
-    taps = 20 * factor + 1 if taps is None else taps
     y, delay, *kept = lowpass(x, fs, fs / (2 * factor), taps, valid)
     return y[..., ::factor], fs / factor, delay, *(v[..., ::factor] for v in kept)
 
