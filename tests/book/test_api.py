@@ -93,7 +93,7 @@ def visible_names(page):
     found = []
     for kind, signature in entries:
         text = html.unescape(re.sub(r"<[^>]*>", "", signature)).strip()
-        name = re.match(r"(?:(?:class|classmethod|static|property) )*([\w.]+)", text)[1]
+        name = re.match(r"(?:(?:class|classmethod|exception|static|property) )*([\w.]+)", text)[1]
         found.append((kind, name))
     return found
 
