@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import Table
+from dopplerlib.evaluation.intervals import Estimate
 
 ERRORS = Table(
     {"ours": (0.024, 1.9, 3), "paper": (float("nan"), 0.25, "none")},
@@ -43,6 +44,24 @@ def test_whole_numbers_have_no_decimals_and_labels_may_be_numbers():
     assert table.cells[1] == ["0.1", "7", "8", "0.50", "0.25"]
 
 
+def test_a_format_says_how_numbers_and_intervals_are_written():
+    rows = {"a": (0.123456, Estimate(2.0, 1.5, 2.75), Estimate(0.5, 0.25, 0.75), 12345)}
+    table = Table(rows, tuple("wxyz"), (".1e", 2, "±.3f", ".3g"))
+    assert table.cells[1] == ["a", "1.2e-01", "2.00 (1.50 to 2.75)", "0.500 ± 0.250", "1.23e+04"]
+    assert Table({"a": Estimate(0.5, 0.25, 0.75)}, digits=".0%").cells == [
+        ["a", "50% (25% to 75%)"]
+    ]
+
+
+def test_facts_need_no_head_and_may_have_their_own_digits():
+    facts = Table({"distance (m)": 1.25, "samples": 10, "consistent": np.True_}, digits={
+        "distance (m)": 1
+    })  # fmt: skip
+    assert facts.cells == [["distance (m)", "1.2"], ["samples", "10"], ["consistent", "yes"]]
+    assert "<thead>" not in facts._repr_html_()
+    assert facts._repr_html_().count('scope="row"') == 3
+
+
 def test_rows_may_be_arrays():
     assert Table({"x": np.array([1.26, 2.0])}, ("a", "b"), digits=1).cells[1] == ["x", "1.3", "2.0"]
 
@@ -57,8 +76,11 @@ def test_rows_may_be_arrays():
         ({"rows": {"a": (1, None)}}, r"rows\['a'\] must .*None"),
         ({"rows": {"a": (1, [2, 3])}}, r"rows\['a'\] must .*\[2, 3\]"),
         ({"columns": ("x", 2)}, "columns must be .*2"),
-        ({"digits": (1, 2, 3)}, "digits must be one number or 2, one for each column, got 3"),
+        ({"digits": (1, 2, 3)}, "digits must be one or 2, one for each column, got 3"),
         ({"digits": -1}, "digits must be a whole number of at least 0, got -1"),
+        ({"digits": "much"}, "digits must be decimals or a format, got 'much'"),
+        ({"digits": {"b": 1}}, "digits must be by labels of rows, got 'b'"),
+        ({"rows": {1: (1, 2), "1": (1, 2)}}, "rows must have labels .*'1' twice"),
         ({"corner": None}, "corner must be a str, got None"),
     ],
 )
