@@ -76,20 +76,14 @@ format: $(VENV)/.ready  ## repair what can be repaired of style and formatting
 	$(VENV)/bin/ruff check --fix
 	$(VENV)/bin/ruff format
 
-.PHONY: notebooks
-notebooks: $(VENV)/.ready  ## execute the chapters in place
-	$(PY) -m tools.notebooks
-
-.PHONY: notebooks-check
-notebooks-check: $(VENV)/.ready  ## execute the chapters again and compare every byte
-	$(PY) -m tools.notebooks --check
-
-.PHONY: text
-text: $(VENV)/.ready  ## write the chapters as text, in which a changed sentence is a changed line
-	$(PY) -m tools.notebooks --text
+# NAME=ekf executes book/ekf.ipynb only, some ten seconds; several names take quotes.
+.PHONY: chapter
+chapter: $(VENV)/.ready  ## execute the chapter NAME=... in place (all without it), with text and hash
+	$(PY) -m tools.notebooks $(NAME:%=book/%.ipynb)
+	$(PY) -m tools.record --hashes
 
 .PHONY: record
-record: $(VENV)/.ready  ## execute the chapters again and write the page on reproducibility
+record: $(VENV)/.ready  ## compare every byte of the chapters, judge all claims with three seeds
 	$(PY) -m tools.record
 
 .PHONY: kernels
@@ -119,10 +113,6 @@ recording: $(VENV)/.ready  ## write the simulated recording of six sensors again
 .PHONY: iq-race
 iq-race: $(VENV)/.ready  ## compare every frequency estimator with the bound: some minutes
 	$(PY) -m tools.iq_race
-
-.PHONY: seeds
-seeds: $(VENV)/.ready  ## judge all claims with three seeds: no verdict may depend on the draw
-	$(PY) -m tools.seeds
 
 .PHONY: bench
 bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement

@@ -142,7 +142,7 @@ def writable(*paths):
 
 
 def executed(paths, timeout):
-    """Yield every path with the text that executing it gives, None if it fails, and the seconds."""
+    """Yield every path with the text that executing it gives, or None if it fails."""
     for number, path in enumerate(paths, start=1):
         print(f"{number} of {len(paths)}: {path.name} ...", end=" ", file=sys.stderr, flush=True)
         start, new = time.perf_counter(), None
@@ -150,10 +150,9 @@ def executed(paths, timeout):
             new = execute(path, timeout)
         except (CellExecutionError, ChapterError, TimeoutError) as error:
             print(f"failed\n{error}", file=sys.stderr)
-        seconds = time.perf_counter() - start
         if new is not None:
-            print(f"{seconds:.1f} s", file=sys.stderr)
-        yield path, new, seconds
+            print(f"{time.perf_counter() - start:.1f} s", file=sys.stderr)
+        yield path, new
 
 
 def main(argv=None):
@@ -172,7 +171,7 @@ def main(argv=None):
             write_beside(path, path.read_text(encoding="utf8"))
         return 0
     bad = False
-    for path, new, _ in executed(paths, chosen.timeout):
+    for path, new in executed(paths, chosen.timeout):
         if new is None:
             bad = True
         elif chosen.check:

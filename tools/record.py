@@ -1,9 +1,9 @@
-"""Execute every chapter again and write down what it took: the page on reproducibility.
+"""Execute every chapter again, judge every claim again, and write the page on reproducibility.
 
-Hashes, versions, seeds, run times and the verdicts under other seeds go to book/reproducibility.md,
-which nobody edits by hand. Nothing is written unless every chapter comes out as it is stored and
-every verdict is the one on record; an interrupted run starts over. Without running anything,
---hashes brings the hashes up to date, for whoever has just changed one chapter.
+Hashes, versions, seeds and the verdicts under other seeds go to book/reproducibility.md, which
+is not edited by hand. Nothing is written unless every chapter comes out as it is stored, byte for
+byte, and every verdict is the one on record; an interrupted run starts over. With --hashes nothing
+runs and only the hashes are renewed: after a change to one chapter the rest still holds.
 """
 
 import hashlib
@@ -23,7 +23,7 @@ from tools.notebooks import ROOT, chapters, differences, executed, writable
 
 PAGE = ROOT / "book" / "reproducibility.md"
 SEED = re.compile(r"default_rng\(([\d_]+)\)")
-RAN, SEEDS, TIMES = "Where it ran", "What changes with the seed", "Run times"
+RAN, SEEDS = "Where it ran", "What changes with the seed"
 SEEDS_TRIED = (1, 2, 3)
 SHOWN = 16  # hexadecimal digits of a hash: 64 bits, plenty to tell files apart
 
@@ -105,19 +105,14 @@ These are the packages that the project asks for; `environment.lock` holds all t
 turn, with the hash of every file."""
 
 
-def run_times():
-    """Execute the chapters; return the section on their run times, or None if one differs."""
-    rows, bad = [], 0
-    for path, new, seconds in executed(chapters(), timeout=300):
+def chapters_repeat():
+    """Execute the chapters; return whether each comes out as it is stored."""
+    bad = 0
+    for path, new in executed(chapters(), timeout=300):
         found = ["failed"] if new is None else differences(path.read_text(encoding="utf8"), new)
         print(*found, sep="\n", end="\n" * bool(found), file=sys.stderr)
-        rows.append((f"`{path.name}`", f"{seconds:.0f}"))
         bad += bool(found)
-    text = f"""Of the whole chapter, with the kernels compiled before. They say what to expect, no
-more: on other machines, and on a busy one, they differ.
-
-{table(("chapter", "run time in s"), rows)}"""
-    return None if bad else text
+    return not bad
 
 
 def seeds_tried():
@@ -130,7 +125,7 @@ def seeds_tried():
         for name, by_seed in found.items()
         for seed, by_claim in by_seed.items()
     ]
-    text = f"""The numbers of random results do, the verdicts do not. `make seeds` draws all noise
+    text = f"""The numbers of random results do, the verdicts do not. `make record` draws all noise
 behind every claim again, with three seeds, and fails if one
 verdict is not that on record.
 
@@ -147,7 +142,7 @@ def page(measured):
 <!-- Written by `make record`; do not edit. -->
 
 Yes, with one command: `make test` executes every chapter and compares all text that comes out with
-what is stored, and `make notebooks-check` compares every byte, the figures included. Both install
+what is stored, and `make record` compares every byte, the figures included. Both install
 the exact versions of `environment.lock` first. This page tells what the stored results are, and
 where they were last made.
 
@@ -166,10 +161,6 @@ figures. Seeds are those that its cells hand to `numpy.random.default_rng`.
 
 {measured[SEEDS]}
 
-## {TIMES}
-
-{measured[TIMES]}
-
 ## Data
 
 {data_table}
@@ -186,12 +177,12 @@ def recorded(text):
     """Return the sections of a page that take a run, by title."""
     return {
         title: text.split(f"\n## {title}\n")[1].split("\n## ")[0].strip()
-        for title in (RAN, SEEDS, TIMES)
+        for title in (RAN, SEEDS)
     }
 
 
 def main(argv=None):
-    """Write the page; return 1 if a result kept it from being written."""
+    """Write the page; return 1, and write nothing, if a result differs."""
     options = parser(__doc__)
     options.add_argument(
         "--hashes", action="store_true", help="run nothing, keep what was measured"
@@ -202,9 +193,10 @@ def main(argv=None):
         measured = recorded(PAGE.read_text(encoding="utf8"))
     else:
         print("all chapters, then all claims; interrupted, it starts over", file=sys.stderr)
-        measured = {RAN: where_it_ran(), TIMES: run_times(), SEEDS: seeds_tried()}
-    if None in measured.values():
-        return 1
+        repeated, tried = chapters_repeat(), seeds_tried()
+        if not repeated or tried is None:
+            return 1
+        measured = {RAN: where_it_ran(), SEEDS: tried}
     write_text(PAGE, page(measured))
     return 0
 

@@ -101,7 +101,7 @@ def test_every_picture_in_the_prose_has_a_text_too(path):
 
 @pytest.mark.parametrize("path", CHAPTERS, ids=name)
 def test_no_cell_hides_its_value_with_a_semicolon(path):
-    """The kernel that compares the outputs shows what the one of `make notebooks` hid."""
+    """The kernel that compares the outputs shows what the one of `make chapter` hid."""
     assert [label for label, c in code_cells(path) if c.source.rstrip().endswith(";")] == []
 
 

@@ -70,7 +70,7 @@ def test_the_text_of_a_chapter_has_its_prose_code_and_results_and_no_picture():
 @pytest.mark.parametrize("chapter", chapters(), ids=lambda path: path.stem)
 def test_the_text_beside_a_chapter_is_that_of_the_chapter(chapter):
     text = as_text(json.loads(chapter.read_text(encoding="utf8")))
-    assert text_path(chapter).read_text(encoding="utf8") == text, "run: make text"
+    assert text_path(chapter).read_text(encoding="utf8") == text, "run: make chapter NAME=..."
 
 
 def test_no_text_is_left_of_a_chapter_that_is_gone():

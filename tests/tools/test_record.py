@@ -7,21 +7,19 @@ import pytest
 import yaml
 
 from tools import record, seeds
-from tools.notebooks import ROOT, chapters
+from tools.notebooks import ROOT
 
 PAGE = record.PAGE.read_text(encoding="utf8")
 
 
 def test_the_hashes_on_the_page_are_those_of_the_stored_results_and_data():
-    """If this fails: `make record`, or `python -m tools.record --hashes` for the hashes alone."""
+    """If this fails: `make chapter NAME=...`; for data alone, `python -m tools.record --hashes`."""
     for table in record.hash_tables():
         assert table in PAGE
 
 
-def test_every_chapter_has_a_run_time_and_every_document_its_verdicts():
+def test_every_document_has_its_verdicts():
     measured = record.recorded(PAGE)
-    named = re.findall(r"^\| `(.+?)` \| \d+ \|$", measured[record.TIMES], flags=re.MULTILINE)
-    assert named == [path.name for path in chapters()]
     judged = re.findall(r"^\| (\w+) \| 1 \|", measured[record.SEEDS], flags=re.MULTILINE)
     assert judged == seeds.documents()
 
@@ -47,18 +45,18 @@ def test_seeds_are_found_in_code_only(tmp_path):
     assert record.seeds(path) == [3, 12]
 
 
-@pytest.mark.parametrize("failed", ["run_times", "seeds_tried"])
-def test_nothing_is_written_if_a_result_differs(monkeypatch, tmp_path, failed):
+@pytest.mark.parametrize(("repeated", "tried"), [(False, "fine"), (True, None)])
+def test_nothing_is_written_if_a_result_differs(monkeypatch, tmp_path, repeated, tried):
     monkeypatch.setattr(record, "PAGE", tmp_path / "page.md")
-    for name in ("run_times", "seeds_tried"):
-        monkeypatch.setattr(record, name, lambda name=name: None if name == failed else "fine")
+    monkeypatch.setattr(record, "chapters_repeat", lambda: repeated)
+    monkeypatch.setattr(record, "seeds_tried", lambda: tried)
     assert record.main([]) == 1
     assert list(tmp_path.iterdir()) == []
 
 
 def test_fresh_hashes_keep_what_was_measured(monkeypatch, tmp_path):
     path = tmp_path / "page.md"
-    measured = {record.RAN: "here", record.SEEDS: "none", record.TIMES: "long ago"}
+    measured = {record.RAN: "here", record.SEEDS: "none"}
     path.write_text(record.page(measured).replace("`codecheck.yml`", "it"), encoding="utf8")
     monkeypatch.setattr(record, "PAGE", path)
     assert record.main(["--hashes"]) == 0
