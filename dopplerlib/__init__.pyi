@@ -6,6 +6,7 @@ from . import evaluation as evaluation
 from . import figures as figures
 from . import kernels as kernels
 from . import model as model
+from . import replication as replication
 from . import signal as signal
 from . import systems as systems
 from . import tracking as tracking

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from dopplerlib.evaluation.claims import read_claims
 from dopplerlib.evaluation.intervals import Estimate
-from dopplerlib.evaluation.verdicts import Draws, Readings, judge, judge_all
+from dopplerlib.replication.claims import read_claims
+from dopplerlib.replication.verdicts import Draws, Readings, judge, judge_all
 
 ROOT = Path(__file__).resolve().parents[1]
 FAR = 1e12  # no quantity of any document comes near, in any unit

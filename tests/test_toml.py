@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from dopplerlib import Scenario
-from dopplerlib.evaluation.claims import Claim, read_claims
-from dopplerlib.evaluation.deviations import Deviation, read_deviations
+from dopplerlib.replication.claims import Claim, read_claims
+from dopplerlib.replication.deviations import Deviation, read_deviations
 
 TEXTS = {
     "claim": """

@@ -11,7 +11,7 @@ import pytest
 import dopplerlib
 from tools.stubs import LIBRARY, stubs
 
-PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation")
+PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "replication")
 MODULES = sorted(
     f"dopplerlib.{package}.{path.stem}"
     for package in PACKAGES

@@ -16,7 +16,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from dopplerlib._files import write_text
-from dopplerlib.evaluation.claims import VERDICTS
+from dopplerlib.replication.claims import VERDICTS
 from tools import seeds as judged
 from tools.command import parser, start
 from tools.notebooks import ROOT, chapters, differences, executed, writable

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from dopplerlib.evaluation.claims import VERDICTS, read_claims
-from dopplerlib.evaluation.verdicts import judge_all
+from dopplerlib.replication.claims import VERDICTS, read_claims
+from dopplerlib.replication.verdicts import judge_all
 from tools.command import parser, start
 
 ROOT = Path(__file__).resolve().parents[1]

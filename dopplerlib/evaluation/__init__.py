@@ -1,4 +1,4 @@
-"""Is it right: consistency statistics."""
+"""Is a filter right: statistics of its errors and innovations, intervals and bounds."""
 
 from .._lazy import attach
 

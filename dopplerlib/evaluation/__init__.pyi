@@ -3,16 +3,11 @@ from . import alarms as alarms
 from . import averages as averages
 from . import bounds as bounds
 from . import checklist as checklist
-from . import claims as claims
 from . import consistency as consistency
-from . import deviations as deviations
 from . import directions as directions
-from . import interval_table as interval_table
 from . import intervals as intervals
 from . import observability as observability
 from . import power as power
 from . import range_bounds as range_bounds
-from . import scorecard as scorecard
 from . import table as table
-from . import verdicts as verdicts
 from . import whiteness as whiteness

@@ -21,7 +21,6 @@ from dopplerlib import (
 from dopplerlib._records import record
 from dopplerlib.evaluation.alarms import first_alarm, innovation_alarms
 from dopplerlib.evaluation.averages import effective_samples
-from dopplerlib.evaluation.claims import Claim
 from dopplerlib.evaluation.directions import errors_by_direction
 from dopplerlib.evaluation.intervals import (
     mean_interval,
@@ -31,7 +30,6 @@ from dopplerlib.evaluation.intervals import (
 )
 from dopplerlib.evaluation.observability import rms_bounds, seen_directions
 from dopplerlib.evaluation.range_bounds import range_crlb
-from dopplerlib.evaluation.verdicts import Draws, judge
 from dopplerlib.model.ambiguity import ring_family, ring_family_direction, ring_family_limits
 from dopplerlib.model.information import fisher_information, inverse_information
 from dopplerlib.model.kinematics import (
@@ -51,6 +49,8 @@ from dopplerlib.model.ranging_noise import (
     resolution_deviation,
 )  # fmt: skip
 from dopplerlib.model.twin import planar_twin
+from dopplerlib.replication.claims import Claim
+from dopplerlib.replication.verdicts import Draws, judge
 from dopplerlib.signal.impairments import add_iq_imbalance, image_rejection, quantize
 from dopplerlib.signal.synthesis import iq_from_geometry, iq_from_velocity, tone, velocity_profile
 

@@ -22,7 +22,7 @@ from . import valid_files
 
 SECTION = re.compile(r"^(\w[\w ]*)\n-+\n", flags=re.MULTILINE)
 ENTRY = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.MULTILINE)
-PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation")
+PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "replication")
 # How a docstring says that arguments are checked elsewhere: such a function promises nothing.
 UNCHECKED = re.compile(r"\bunchecked\b|\bnot checked\b|nothing is checked", flags=re.IGNORECASE)
 
@@ -179,8 +179,7 @@ def trace(package, most=3):
 
 
 def _all_modules():
-    names = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "systems")
-    return [module for name in names for module in modules(f"dopplerlib.{name}")]
+    return [module for name in (*PACKAGES, "systems") for module in modules(f"dopplerlib.{name}")]
 
 
 def _wrap_class(cls, calls, stack):

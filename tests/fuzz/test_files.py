@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from dopplerlib import RadarArray, Scenario
-from dopplerlib.evaluation.claims import RELATIONS, read_claims
-from dopplerlib.evaluation.deviations import read_deviations
+from dopplerlib.replication.claims import RELATIONS, read_claims
+from dopplerlib.replication.deviations import read_deviations
 from dopplerlib.signal.recording import read_sigmf, read_wav
 from tests.fuzz import valid_files
 from tests.fuzz.mutations import bytes_of, json_of, toml_of

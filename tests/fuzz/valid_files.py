@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from dopplerlib import Scenario
-from dopplerlib.evaluation.claims import read_claims
-from dopplerlib.evaluation.deviations import read_deviations
+from dopplerlib.replication.claims import read_claims
+from dopplerlib.replication.deviations import read_deviations
 from dopplerlib.signal.recording import Recording, read_sigmf, read_wav, write_sigmf, write_wav
 
 RNG = np.random.default_rng(1)

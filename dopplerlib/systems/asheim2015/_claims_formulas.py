@@ -4,8 +4,8 @@ import numpy as np
 
 from ...estimation.linear_kalman import kf
 from ...estimation.radial_velocity import radial_velocity_terms
-from ...evaluation.verdicts import Readings
 from ...model.range_rate import range_rate, range_rate_jacobian
+from ...replication.verdicts import Readings
 from .expected_error import error_area, one_scan_bound
 from .in_the_plane import polar_jacobian
 from .published import deviations, quoted, resolutions, scenario, settings, snr

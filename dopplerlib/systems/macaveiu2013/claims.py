@@ -4,8 +4,8 @@ import numpy as np
 
 from ... import _checks
 from ...evaluation.intervals import mean_interval, quantile_interval, share_interval
-from ...evaluation.verdicts import Readings
 from ...model.polar_radar import polar_radar_jacobian
+from ...replication.verdicts import Readings
 from . import chain, chain_study, crossing, lag, polar, regions, tracking, two_tones, waveforms
 from .published import KMH, paths, settings
 

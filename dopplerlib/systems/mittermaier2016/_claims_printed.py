@@ -4,8 +4,8 @@ import numpy as np
 
 from ...evaluation.bounds import crlb
 from ...evaluation.consistency import chi2_interval
-from ...evaluation.verdicts import Readings
 from ...model.doppler import doppler_jacobian, doppler_shift
+from ...replication.verdicts import Readings
 from .published import (
     published_figure3,
     published_figure4,

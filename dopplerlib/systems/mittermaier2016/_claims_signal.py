@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...evaluation.intervals import Estimate, mean_interval, share_interval
-from ...evaluation.verdicts import Readings
+from ...replication.verdicts import Readings
 from ...signal.frequency import ml_frequency
 from ...signal.interpolation import peak_bin
 from ...signal.laws import (

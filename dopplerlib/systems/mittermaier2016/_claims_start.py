@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...evaluation.intervals import Estimate, mean_interval, quantile_interval, share_interval
-from ...evaluation.verdicts import Draws, Readings
+from ...replication.verdicts import Draws, Readings
 from .error_map import figure3, figure3_bound, shares_above
 from .map_readings import figure3_readings
 from .published import published_figure3

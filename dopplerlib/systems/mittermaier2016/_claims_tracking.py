@@ -9,11 +9,11 @@ from ...estimation.extended_kalman import ekf
 from ...evaluation.bounds import crlb
 from ...evaluation.consistency import chi2_interval, nees, nis
 from ...evaluation.intervals import Estimate, mean_interval, quantile_interval, share_interval
-from ...evaluation.verdicts import Draws, Readings
 from ...model.doppler import doppler_jacobian, doppler_shift
 from ...model.motion import constant_velocity
 from ...model.radar_array import RadarArray
 from ...model.simulation import simulate
+from ...replication.verdicts import Draws, Readings
 from .published import published_figure6, scenario, table2
 from .start import table2_starts
 from .tracking import figure6

@@ -4,8 +4,8 @@ import numpy as np
 
 from ...evaluation.consistency import chi2_interval
 from ...evaluation.intervals import quantile_interval, share_interval
-from ...evaluation.verdicts import Draws, Readings
 from ...model.doppler import doppler_jacobian
+from ...replication.verdicts import Draws, Readings
 from .. import mittermaier2016
 from .post_mortem import final_bound, post_mortem
 from .published import reported_record, scenario, start_settings

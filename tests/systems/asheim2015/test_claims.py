@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dopplerlib.evaluation.claims import read_claims
+from dopplerlib.replication.claims import read_claims
 from dopplerlib.systems.asheim2015.claims import stand_in_evidence
 from dopplerlib.systems.asheim2015.published import data_file
 from tests.claims import check_flips, check_references, check_verdicts, evidence_of

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import RadarArray, constant_velocity, crlb, doppler_shift
-from dopplerlib.evaluation.deviations import read_deviations
+from dopplerlib.replication.deviations import read_deviations
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems.mittermaier2016.published import data_file
 from tests.claims import (

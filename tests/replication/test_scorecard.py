@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from dopplerlib.evaluation.claims import Claim
 from dopplerlib.evaluation.intervals import Estimate
-from dopplerlib.evaluation.scorecard import Scorecard
-from dopplerlib.evaluation.verdicts import Draws, Readings, judge
+from dopplerlib.replication.claims import Claim
+from dopplerlib.replication.scorecard import Scorecard
+from dopplerlib.replication.verdicts import Draws, Readings, judge
 
 CLAIMS = {
     "nis": Claim("nis", "Fig 6", "NIS", "random", "typical", "figure6", "nis-cell",

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from .intervals import mean_interval, quantile_interval, share_interval
+from ..evaluation.intervals import mean_interval, quantile_interval, share_interval
 
 _INTERVALS = {"median": quantile_interval, "mean": mean_interval}
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")

@@ -6,8 +6,8 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
+from ..evaluation.intervals import Estimate
 from .claims import VERDICTS
-from .intervals import Estimate
 from .verdicts import Judgment
 
 
@@ -27,8 +27,8 @@ class Scorecard:
 
     Examples
     --------
-    >>> from dopplerlib.evaluation.claims import Claim
-    >>> from dopplerlib.evaluation.verdicts import judge
+    >>> from dopplerlib.replication.claims import Claim
+    >>> from dopplerlib.replication.verdicts import judge
     >>> claim = Claim("pi", "Sec 1", "the circle's number", "deterministic", "reproduced",
     ...               "page", "cell", "test", published=3.14, rounding=0.005)
     >>> Scorecard([judge(claim, 3.14159)]).counts

@@ -9,8 +9,8 @@ import numpy as np
 from .. import _checks
 from .._records import record
 from .._typing import ArrayLike
+from ..evaluation.intervals import Estimate, share_interval
 from .claims import Claim, check_claim
-from .intervals import Estimate, share_interval
 
 # Share of our runs that a typical draw leaves on either side of it.
 _TAIL = 0.025
@@ -117,7 +117,7 @@ def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
 
     Examples
     --------
-    >>> from dopplerlib.evaluation.claims import Claim
+    >>> from dopplerlib.replication.claims import Claim
     >>> claim = Claim("pi", "Sec 1", "the circle's number", "deterministic", "reproduced",
     ...               "page", "cell", "test", published=3.14, rounding=0.005)
     >>> judge(claim, 3.14159).verdict
@@ -174,7 +174,7 @@ def judge_all(claims: Iterable[Claim], evidence: dict[str, Any]) -> tuple[Judgme
     --------
     A count of 7 that 50 runs of ours spread about, and one that they do not reach:
 
-    >>> from dopplerlib.evaluation.claims import Claim
+    >>> from dopplerlib.replication.claims import Claim
     >>> claims = [Claim(name, "Sec 1", "a count", "random", "typical", "page", "cell", "test",
     ...                 published=7.0) for name in ("near", "far")]
     >>> evidence = {"near": Draws(np.arange(50.0)), "far": Draws(100 + np.arange(50.0))}

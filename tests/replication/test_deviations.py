@@ -2,7 +2,7 @@
 
 import pytest
 
-from dopplerlib.evaluation.deviations import read_deviations
+from dopplerlib.replication.deviations import read_deviations
 
 TABLE = """
 [[deviation]]

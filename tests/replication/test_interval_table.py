@@ -1,6 +1,6 @@
 """Medians, means and shares are shown with two digits and their interval."""
 
-from dopplerlib.evaluation.interval_table import IntervalTable
+from dopplerlib.replication.interval_table import IntervalTable
 
 
 def test_a_table_shows_two_digits_and_powers_of_ten():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from dopplerlib.evaluation.claims import read_claims
+from dopplerlib.replication.claims import read_claims
 
 GOOD = """
 [[claim]]

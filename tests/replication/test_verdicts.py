@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dopplerlib.evaluation.claims import Claim, read_claims
 from dopplerlib.evaluation.intervals import Estimate
-from dopplerlib.evaluation.verdicts import Draws, Readings, judge, judge_all
+from dopplerlib.replication.claims import Claim, read_claims
+from dopplerlib.replication.verdicts import Draws, Readings, judge, judge_all
 
 NUMBER = Claim(
     "a", "Sec 1", "a is", "deterministic", "reproduced", "p", "c", "t", published=0.25,

@@ -1,0 +1,5 @@
+"""Is a document right: its claims, our evidence, and the verdicts."""
+
+from .._lazy import attach
+
+__getattr__, __dir__ = attach(__name__, __path__)

@@ -1,0 +1,6 @@
+# Made by python -m tools.stubs; do not edit.
+from . import claims as claims
+from . import deviations as deviations
+from . import interval_table as interval_table
+from . import scorecard as scorecard
+from . import verdicts as verdicts
