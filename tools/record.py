@@ -176,8 +176,7 @@ reproduces it, for whoever wants to check the replication formally.
 def recorded(text):
     """Return the sections of a page that take a run, by title."""
     return {
-        title: text.split(f"\n## {title}\n")[1].split("\n## ")[0].strip()
-        for title in (RAN, SEEDS)
+        title: text.split(f"\n## {title}\n")[1].split("\n## ")[0].strip() for title in (RAN, SEEDS)
     }
 
 
