@@ -207,9 +207,14 @@ def is_whole(value):
 
 
 def whole_number(name, value, least=1):
-    """Return `value` as an int, or raise if it is not a whole number of at least `least`."""
-    if not is_whole(value) or not least <= value < 2**63:
-        raise ValueError(f"{name} must be a whole number of at least {least}, got {_short(value)}")
+    """Return `value` as an int, or raise if it is not a whole number of at least `least`.
+
+    With ``least=None`` it may be any whole number.
+    """
+    lowest = -(2**63) if least is None else least
+    if not is_whole(value) or not lowest <= value < 2**63:
+        wanted = "a whole number" + (f" of at least {least}" if least is not None else "")
+        raise ValueError(f"{name} must be {wanted}, got {_short(value)}")
     return int(value)
 
 

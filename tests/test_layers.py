@@ -13,6 +13,7 @@ ORDER = [
     "_data",
     "_typing",
     "_checks",
+    "_hints",
     "_compile",
     "_progress",
     "_toml",

@@ -1,0 +1,180 @@
+"""Arguments checked by their hints: one decorator, and hints that say what a type checker cannot.
+
+A function whose arguments are records, generators, numbers and words needs no lines of its own for
+them::
+
+    @checked
+    def figure(draws: Count, *, rng: np.random.Generator, plane: Literal["x", "z"] = "x"): ...
+
+Its body gets what the checks return: an array for an array_like, a tuple for an iterable.
+"""
+
+import inspect
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache, partial, wraps
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from . import _checks
+from ._typing import ArrayLike
+
+_T = TypeVar("_T", bound=Callable[..., Any])
+
+
+def checked(function: _T) -> _T:
+    """Check arguments of a function, or fields of a record, against their hints at every call.
+
+    A hint may be a class, a type of numbers or text, `Literal`, a union of these and None,
+    ``Iterable[...]``, ``tuple[...]`` or ``dict[..., ...]`` of them, an array, or ``Annotated`` with
+    a check ``(name, value) -> value`` like those of `_checks`. Not checked are defaults, ``*args``
+    and ``**kwargs``, and what has another hint or none. It stands above `record` and `cache`.
+
+    Raises
+    ------
+    ValueError
+        From the decorated function: "<argument> must <expectation>, got <value>".
+    """
+    if isinstance(function, type):
+        function.__init__ = checked(function.__init__)
+        return function
+    signature = inspect.signature(function)
+
+    @cache  # when it is called first: a hint may name a class that stands further down
+    def checks():
+        hints = get_type_hints(function, include_extras=True)
+        named = [p.name for p in signature.parameters.values() if p.kind not in _COLLECTING]
+        found = {name: _check(hints[name]) for name in named if name in hints}
+        return {name: check for name, check in found.items() if check}
+
+    @wraps(function)
+    def call(*args, **kwargs):
+        try:
+            bound = signature.bind(*args, **kwargs)
+        except TypeError:
+            return function(*args, **kwargs)  # raises the same, with the function's name
+        arguments = bound.arguments
+        for name, check in checks().items():
+            if name in arguments:
+                arguments[name] = check(name, arguments[name])
+        return function(*bound.args, **bound.kwargs)
+
+    return call
+
+
+def shaped(*shape, check=_checks.moderate):
+    """Return a check of arrays whose last axes have `shape`, None for any length; more may lead."""
+    return partial(check, shape=shape)
+
+
+def exactly(*shape, check=_checks.moderate):
+    """Return a check of arrays of `shape`, None for any length."""
+
+    def of_shape(name, value):
+        array = check(name, value, shape)
+        if array.ndim != len(shape):
+            raise ValueError(f"{name} must have {len(shape)} axes, got shape {array.shape}")
+        return array
+
+    return of_shape
+
+
+# Numbers, all of them from 1e-60 to 1e60 in size if not zero: their products are finite.
+Count = Annotated[int, _checks.whole_number]  # 1, 2, ...
+Index = Annotated[int, partial(_checks.whole_number, least=0)]
+Runs = Annotated[int, partial(_checks.count, most=10**6)]
+Positive = Annotated[float, _checks.moderate_number]
+Real = Annotated[float, partial(_checks.one_number, check=_checks.moderate)]
+Probability = Annotated[float, _checks.probability]
+# Arrays of such numbers.
+Reals = Annotated[ArrayLike, _checks.moderate]
+State = Annotated[ArrayLike, exactly(6)]
+States = Annotated[ArrayLike, shaped(6)]
+Booleans = Annotated[ArrayLike, _checks.booleans]
+
+_COLLECTING = inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD
+_ARRAY_LIKE = frozenset(get_args(ArrayLike))  # a union, of which a larger union keeps the parts
+_PLAIN = {
+    bool: _checks.one_boolean,
+    int: partial(_checks.whole_number, least=None),
+    float: _checks.one_number,
+    str: _checks.text,
+    np.random.Generator: _checks.generator,
+}
+
+
+def _check(hint):
+    """Return the check ``(name, value) -> value`` of a hint, or None if it says nothing."""
+    kind, parts = get_origin(hint) or hint, get_args(hint)
+    if kind is Annotated:
+        return next(filter(callable, hint.__metadata__), None) or _check(parts[0])
+    if kind in (Union, UnionType):
+        return _either(parts)
+    if kind is Literal:
+        return partial(_checks.one_of, choices=parts)
+    if kind is Callable:
+        return _checks.function
+    if kind in (Iterable, Sequence, list):
+        return _items(_check(parts[0]))
+    if kind is tuple and parts:
+        return _items(_check(parts[0])) if parts[-1] is ... else _fixed([*map(_check, parts)])
+    if kind is dict and parts:
+        return _mapping(*map(_check, parts))
+    if isinstance(kind, type):
+        return _PLAIN.get(kind) or partial(_checks.instance, kind=kind)
+    return None
+
+
+def _either(parts):
+    words = sum((get_args(part) for part in parts if get_origin(part) is Literal), ())
+    arrays = set(parts) >= _ARRAY_LIKE
+    drop = {NoneType, *(_ARRAY_LIKE if arrays else ())}
+    rest = [_check(p) for p in parts if p not in drop and get_origin(p) is not Literal]
+    rest += [_checks.numbers] * arrays
+
+    def either(name, value):
+        if value is None and NoneType in parts:
+            return None
+        if words and (isinstance(value, str) or not rest):
+            return _checks.one_of(name, value, words)
+        for check in rest[:-1]:
+            try:
+                return check(name, value)
+            except ValueError:
+                pass
+        return rest[-1](name, value)
+
+    return either if None not in rest else None
+
+
+def _items(check):
+    def items(name, values):
+        found = tuple(_checks.iterable(name, values))
+        return tuple(check(name, value) for value in found) if check else found
+
+    return items
+
+
+def _fixed(checks):
+    def fixed(name, values):
+        found = tuple(_checks.iterable(name, values))
+        if len(found) != len(checks):
+            raise ValueError(f"{name} must have {len(checks)} parts, got {len(found)}")
+        return tuple(
+            check(name, value) if check else value
+            for check, value in zip(checks, found, strict=True)
+        )
+
+    return fixed
+
+
+def _mapping(key, value):
+    def mapping(name, given):
+        items = _checks.instance(name, given, dict).items()
+        return {
+            (key(name, k) if key else k): (value(f"{name}[{k!r}]", v) if value else v)
+            for k, v in items
+        }
+
+    return mapping
