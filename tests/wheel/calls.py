@@ -33,7 +33,7 @@ def part_calls(dl, np):
         "tracking": lambda: dl.gnn_assign([[1.0, 2.0], [3.0, 0.5]], 4.0)[0],
         "chain": lambda: dl.chain.baseband.Baseband.from_samples(np.ones((6, 500)), 1e3, ring).fs,
         "evaluation": lambda: dl.chi2_interval(6),
-        "evaluation, claims": lambda: judged(dl, rng),
+        "replication": lambda: judged(dl, rng),
         "asheim2015": lambda: s.asheim2015.deviations([1.0, 2.0]),
         "macaveiu2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
         "mittermaier2016": lambda: s.mittermaier2016.published_figure6().nis,
