@@ -13,7 +13,17 @@ import inspect
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial, wraps
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    TypeVar,
+    Union,
+    cast,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 
@@ -60,7 +70,7 @@ def checked(function: _T) -> _T:
                 arguments[name] = check(name, arguments[name])
         return function(*bound.args, **bound.kwargs)
 
-    return call
+    return cast(_T, call)
 
 
 def shaped(*shape, check=_checks.moderate):
