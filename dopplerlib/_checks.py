@@ -112,6 +112,16 @@ def one_matrix(name, array):
     return array
 
 
+def one_row(name, value, check=finite, least=1):
+    """Return `value` as an array of one axis that passes `check`, `least` entries or more."""
+    array = check(name, value, (None,))
+    if array.ndim != 1 or len(array) < least:
+        raise ValueError(
+            f"{name} must have one axis with {least} values or more, got shape {array.shape}"
+        )
+    return array
+
+
 def detections(name, value, m):
     """Return measurements (..., D, m), NaN for what is missing; an empty list is an empty scan."""
     array = real(name, value)

@@ -1,6 +1,7 @@
 # Made by python -m tools.stubs; do not edit.
 from . import frequency as frequency
 from . import front_end as front_end
+from . import fsk as fsk
 from . import impairments as impairments
 from . import interpolation as interpolation
 from . import laws as laws
@@ -9,3 +10,4 @@ from . import recording as recording
 from . import sliding as sliding
 from . import synthesis as synthesis
 from . import validity as validity
+from . import waveforms as waveforms

@@ -4,8 +4,8 @@ Estimation of Automotive Target Trajectories by Kalman Filtering, Buletinul Stii
 Universitatii Politehnica din Timisoara, Seria Electronica si Telecomunicatii, 58(72).
 
 Functions of the same name in several modules are reached through the module: `chain`,
-`chain_study`, `crossing`, `lag`, `maneuvers`, `polar`, `regions`, `tracking`,
-`two_tones`, `waveforms`.
+`chain_study`, `crossing`, `lag`, `maneuvers`, `polar`, `regions`,
+`signals`, `tracking`.
 """
 
 from ..._lazy import attach
@@ -17,9 +17,8 @@ from . import (
     maneuvers,
     polar,
     regions,
+    signals,
     tracking,
-    two_tones,
-    waveforms,
 )
 from .published import KMH, Path2D, Settings, hard_turn, paths, settings
 
@@ -37,9 +36,8 @@ __all__ = [
     "polar",
     "regions",
     "settings",
+    "signals",
     "tracking",
-    "two_tones",
-    "waveforms",
 ]
 
 __getattr__, __dir__ = attach(__name__, __path__)

@@ -6,7 +6,8 @@ from ... import _checks
 from ...evaluation.intervals import mean_interval, quantile_interval, share_interval
 from ...model.polar_radar import polar_radar_jacobian
 from ...replication.verdicts import Readings
-from . import chain, chain_study, crossing, lag, polar, regions, tracking, two_tones, waveforms
+from ...signal import fsk, waveforms
+from . import chain, chain_study, crossing, lag, polar, regions, signals, tracking
 from .published import KMH, paths, settings
 
 RUNS = 200
@@ -39,32 +40,34 @@ def evidence(*, rng):
 
 
 def _waveforms(rng):
-    s = settings()
+    s, radar = settings(), settings().radar
     targets = np.array([[30.0, -5.0], [40.0, 4.0]])
-    relations = np.stack([waveforms.chirp_relation(a * s.bandwidth / s.T) for a in (1, -1)])
-    pairs, _ = waveforms.intersections(relations, [targets @ row for row in relations])
-    A = two_tones.mfsk_relations()
+    relations = _relations((1, -1))
+    pairs, _ = waveforms.chirp_intersections(relations, [targets @ row for row in relations])
+    A = fsk.mfsk_relations(radar)
     shared = np.array([targets[0], [44.0, (A[0] @ targets[0] - A[0, 0] * 44.0) / A[0, 1]]])
 
     def mfsk_off(case, count):
-        pair = [waveforms.noisy(one, 20, rng=rng) for one in two_tones.mfsk(case)]
-        return np.abs(two_tones.mfsk_solve(*pair, count)[0, 0] - case[:, 0]).min()
+        pair = [signals.noisy(one, 20, rng=rng) for one in fsk.mfsk_beats(radar, case)]
+        return np.abs(fsk.mfsk_solve(radar, *pair, count)[0, 0] - case[:, 0]).min()
 
     def fsk_off(v):
-        r, _ = two_tones.fsk_range(*two_tones.fsk([[30.0, v], [55.0, v]]))
-        return float(np.abs(r - [30, 55]).min())
+        r, _ = fsk.fsk_solve(radar, *fsk.fsk_beats(radar, [[30.0, v], [55.0, v]]))
+        return float(np.abs(r - np.array([30, 55])).min())
 
     def seen(case, chirps=512):
-        signal = waveforms.noisy(waveforms.rapid_chirps(case, chirps), 0, rng=rng)
-        return waveforms.range_doppler_map(signal)
+        signal = waveforms.rapid_chirps(radar, case, chirps=chirps)
+        return waveforms.range_doppler_map(radar, signals.noisy(signal, 0, rng=rng))
 
     speed = {
-        f"{chirps} chirps in a measurement": waveforms.strongest(*seen([[60.0, -60.0]], chirps))[1]
+        f"{chirps} chirps in a measurement": waveforms.strongest_cell(
+            *seen([[60.0, -60.0]], chirps)
+        )[1]
         for chirps in (512, 1024)
     }
 
     def shape(case):
-        ranges, rates = waveforms.spread(seen(case)[2])
+        ranges, rates = waveforms.occupied_cells(seen(case)[2])
         return ranges / rates
 
     return {
@@ -80,19 +83,23 @@ def _waveforms(rng):
         ),
         "mfsk-time": 1 / _slopes_needed(targets),
         "rapid-unambiguous": Readings(speed),
-        "profile-car": shape(waveforms.CAR),
-        "profile-pedestrian": shape(waveforms.PEDESTRIAN),
+        "profile-car": shape(signals.CAR),
+        "profile-pedestrian": shape(signals.PEDESTRIAN),
     }
+
+
+def _relations(slopes):
+    s = settings()
+    return np.stack([waveforms.chirp_relation(s.radar, a * s.bandwidth / s.T) for a in slopes])
 
 
 def _slopes_needed(targets):
     """Return how many slopes leave no ghost, at the frequency resolution of one measurement."""
-    s = settings()
-    rows = [waveforms.chirp_relation(a * s.bandwidth / s.T) for a in waveforms.SLOPES]
+    rows = _relations(signals.SLOPES)
     for number in range(2, len(rows) + 1):
-        some = np.stack(rows[:number])
-        _, misfit = waveforms.intersections(some, [targets @ row for row in some])
-        if np.sum(misfit < 0.5 / s.T) == len(targets):
+        some = rows[:number]
+        _, misfit = waveforms.chirp_intersections(some, [targets @ row for row in some])
+        if np.sum(misfit < 0.5 / settings().T) == len(targets):
             return number
     raise ValueError(f"SLOPES are too few for {len(targets)} targets")
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..._data import data, read_toml
 from ..._records import record
+from ...signal.waveforms import ChirpRadar
 
 data_file = partial(data, "macaveiu2013")
 KMH = 1 / 3.6  # m/s
@@ -50,9 +51,14 @@ class Settings:
         return np.arange(self.samples) * self.T
 
     @property
+    def radar(self):
+        """The radar, as `dopplerlib.signal.waveforms` takes it; one measurement takes T."""
+        return ChirpRadar(self.carrier, self.bandwidth, self.T)
+
+    @property
     def wavelength(self):
         """Wavelength of the radar in m."""
-        return 299_792_458.0 / self.carrier
+        return self.radar.wavelength
 
     @property
     def E_z(self):

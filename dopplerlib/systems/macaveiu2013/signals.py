@@ -1,0 +1,38 @@
+"""What this book shows to the waveforms of Section II: all of it is ours."""
+
+import numpy as np
+
+from ... import _checks
+from .published import KMH
+
+SLOPES = (1.0, -1.0, 0.6, -0.3)  # of several chirps, in units of the bandwidth over T
+CAR = np.stack([np.linspace(18, 22, 5), np.full(5, 10 * KMH)], axis=-1)  # five points, 10 km/h
+PEDESTRIAN = np.array([[12.0, v] for v in (-1.5, -0.7, 0.2, 0.8, 1.5)])  # torso, arms and legs
+
+
+def noisy(signal, snr_db, *, rng):
+    """Return a signal with white complex noise.
+
+    Parameters
+    ----------
+    signal : array_like of complex, shape (...)
+        Sum of echoes, each of amplitude 1.
+    snr_db : float
+        Power of one echo over that of the noise, for each sample, in dB.
+    rng : numpy.random.Generator
+        Source of the noise.
+
+    Returns
+    -------
+    ndarray of complex, shape (...)
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+    """
+    signal = _checks.finite_complex("signal", signal)
+    _checks.generator("rng", rng)
+    deviation = np.sqrt(0.5 * 10 ** (-_checks.one_number("snr_db", snr_db, _checks.decibels) / 10))
+    shape = (2, *signal.shape)
+    return signal + deviation * np.tensordot([1, 1j], rng.standard_normal(shape), 1)
