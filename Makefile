@@ -90,29 +90,10 @@ record: $(VENV)/.ready  ## compare every byte of the chapters, judge all claims 
 kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
 	$(PY) -m tools.kernels
 
-.PHONY: figure4
-figure4: $(VENV)/.ready  ## run the study of Fig 4 in full: some twenty seconds
-	$(PY) -m tools.figure4 study
-
-.PHONY: figure4-readings
-figure4-readings: $(VENV)/.ready  ## score every reading of Fig 4: some minutes
-	$(PY) -m tools.figure4 readings
-
-.PHONY: macaveiu-study
-macaveiu-study: $(VENV)/.ready  ## run the scheme of Macaveiu et al. on many records: ten minutes or so
-	$(PY) -m tools.macaveiu
-
-.PHONY: valarmathi-study
-valarmathi-study: $(VENV)/.ready  ## run all algorithms at all noise levels of Valarmathi: minutes
-	$(PY) -m tools.valarmathi
-
-.PHONY: recording
-recording: $(VENV)/.ready  ## write the simulated recording of six sensors again
-	$(PY) -m tools.simulated_recording
-
-.PHONY: iq-race
-iq-race: $(VENV)/.ready  ## compare every frequency estimator with the bound: some minutes
-	$(PY) -m tools.iq_race
+# NAME=noise_sweep runs that one; what it computes and costs: python -m studies NAME --help.
+.PHONY: study
+study: $(VENV)/.ready  ## run the study NAME=... and write results/NAME.* (list them without NAME)
+	$(PY) -m studies $(NAME)
 
 .PHONY: bench
 bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement
@@ -137,7 +118,7 @@ lock: $(if $(filter .venv-uv/%,$(UV)),.venv-uv/.ready)  ## renew all lock files
 .PHONY: clean
 clean:  ## remove everything that the other targets made
 	rm -rf $(VENV) $(BENCH) .venv-uv .venv-matrix book/_build *.egg-info .hypothesis .ruff_cache .mypy_cache
-	find dopplerlib book data tests tools benchmarks \
+	find dopplerlib book data results studies tests tools benchmarks \
 		\( -name __pycache__ -o -name '*.part' -o -name '.partial-*' \) -prune -exec rm -rf {} +
 
 # One lock for every platform and every Python from 3.11 on, without the address of an index.

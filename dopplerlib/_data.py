@@ -1,4 +1,4 @@
-"""The files of `data/`, wherever the library runs: a checkout, an installed wheel, a zip file."""
+"""The files of `data/` and `results/`, wherever the library runs: checkout, wheel or zip file."""
 
 import json
 import tomllib
@@ -9,39 +9,49 @@ from tempfile import TemporaryDirectory
 
 
 def data(*names):
-    """Return a file or folder of ``data/``: a Traversable, which is a `Path` unless it is zipped.
+    """Return a file or folder of ``data/``, which holds what the documents report.
 
-    A wheel carries ``data/`` inside the package; in a checkout it stands beside it.
+    It is a Traversable: a `Path`, unless it lies in a zip file.
     """
-    folder = files(__package__) / "data"
-    if not folder.is_dir():
-        folder = Path(__file__).parents[1] / "data"
-    return folder.joinpath(*names)
+    return _shipped("data").joinpath(*names)
 
 
-def read_toml(*names):
-    """Return the tables of a TOML file of ``data/``, a new dict each time."""
-    return tomllib.loads(_text(names))
+def results(*names):
+    """Return a file or folder of ``results/``, which holds what our studies found; as `data`."""
+    return _shipped("results").joinpath(*names)
 
 
-def read_json(*names):
-    """Return the content of a JSON file of ``data/``, new each time."""
-    return json.loads(_text(names))
+def _shipped(name):
+    # A wheel carries both inside the package; in a checkout they stand beside it.
+    folder = files(__package__) / name
+    return folder if folder.is_dir() else Path(__file__).parents[1] / name
 
 
-def read_lines(*names):
-    """Return the lines of a file of ``data/``, as `numpy.genfromtxt` and `csv` take them."""
-    return _text(names).splitlines()
+def read_toml(*names, folder=data):
+    """Return the tables of a TOML file of ``data/``, or of another folder, a new dict each time."""
+    return tomllib.loads(_text(names, folder))
 
 
-def _text(names):
-    return data(*names).read_text(encoding="utf-8-sig")
+def read_json(*names, folder=data):
+    """Return the content of a JSON file of ``data/``, or of another folder, new each time."""
+    return json.loads(_text(names, folder))
+
+
+def read_lines(*names, folder=data):
+    """Return the lines of a file of ``data/``, or of another folder.
+
+    `numpy.genfromtxt` and `csv` take them.
+    """
+    return _text(names, folder).splitlines()
+
+
+def _text(names, folder):
+    return folder(*names).read_text(encoding="utf-8-sig")
 
 
 @contextmanager
-def on_disk(document, *names):
-    """Give a folder that holds these files of ``data/<document>``, for what cannot read a zip."""
-    folder = data(document)
+def on_disk(folder, *names):
+    """Give a folder that holds these files of a Traversable, for what cannot read a zip."""
     if isinstance(folder, Path):
         yield folder
         return

@@ -1,4 +1,4 @@
-"""The data files are what their READMEs say: the files, the columns, and what is missing."""
+"""Data and results are what their READMEs say: the files, the columns, and what is missing."""
 
 import csv
 import hashlib
@@ -10,14 +10,18 @@ from pathlib import Path
 
 import pytest
 
-DATA = Path(__file__).resolve().parents[1] / "data"
-FOLDERS = sorted(path for path in DATA.iterdir() if path.is_dir())
-FILES = sorted(path for path in DATA.rglob("*") if path.is_file() and path.name != "README.md")
+ROOT = Path(__file__).resolve().parents[1]
+DATA, RESULTS = ROOT / "data", ROOT / "results"
+SOURCES = sorted(path for path in DATA.iterdir() if path.is_dir())
+FOLDERS = [*SOURCES, RESULTS]
+FILES = sorted(
+    path for folder in FOLDERS for path in folder.iterdir() if path.suffix not in (".md", ".part")
+)
 PAPER = DATA / "mittermaier2016"
 
 
 def name(path):
-    return path.relative_to(DATA).as_posix()
+    return path.relative_to(ROOT).as_posix()
 
 
 def readme(folder):
@@ -47,16 +51,19 @@ def unknown(path, title):
 
 def test_every_folder_is_in_the_readme_of_the_data():
     linked = re.findall(r"\]\(([\w-]+)\)", readme(DATA))
-    assert sorted(linked) == [folder.name for folder in FOLDERS]
+    assert sorted(linked) == [folder.name for folder in SOURCES]
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=name)
 def test_every_file_is_in_the_readme_of_its_folder_and_no_other(folder):
     linked = re.findall(r"^\| \[`([^`]+)`\]\(\1\) \|", readme(folder), flags=re.MULTILINE)
-    assert sorted(linked) == [path.name for path in FILES if path.parent == folder]
+    # How a result was made stands beside it, in NAME.toml: one sentence tells of all of them.
+    beside = {".toml"} if folder == RESULTS else set()
+    here = [path.name for path in FILES if path.parent == folder and path.suffix not in beside]
+    assert sorted(linked) == here
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=name)
+@pytest.mark.parametrize("folder", SOURCES, ids=name)
 def test_every_source_is_cited_and_its_terms_are_told(folder):
     """A source has authors, a title and a year; not every one has a DOI or an open license."""
     quote = " ".join(re.findall(r"^> (.*)$", readme(folder), flags=re.MULTILINE))
@@ -81,7 +88,7 @@ def test_a_json_file_has_the_entries_that_its_readme_explains(path):
     assert list(content) == table_under(path.name, readme(path.parent))
 
 
-@pytest.mark.parametrize("path", [p for p in FILES if p.suffix == ".toml"], ids=name)
+@pytest.mark.parametrize("path", sorted(DATA.rglob("*.toml")), ids=name)
 def test_a_toml_file_names_its_source(path):
     text = path.read_text(encoding="utf-8")
     tomllib.loads(text)

@@ -47,12 +47,13 @@ def seeds(path):
 
 
 def data_files():
-    """Return every file with numbers of a source document."""
-    return sorted(
+    """Return every file with numbers: those of the documents, then those of our studies."""
+    return [
         path
-        for path in (ROOT / "data").rglob("*")
-        if path.is_file() and path.name != "README.md" and path.parent != ROOT / "data"
-    )
+        for folder in ("data", "results")
+        for path in sorted((ROOT / folder).rglob("*"))
+        if path.is_file() and path.suffix not in (".md", ".part")
+    ]
 
 
 def packages():

@@ -160,9 +160,9 @@ def read_sigmf(
     Examples
     --------
     >>> from dopplerlib import read_sigmf
-    >>> from dopplerlib._data import on_disk
-    >>> files = "simulated_iq.sigmf-meta", "simulated_iq.sigmf-data"
-    >>> with on_disk("mittermaier2016", *files) as folder:
+    >>> from dopplerlib._data import on_disk, results
+    >>> files = "simulated_recording.sigmf-meta", "simulated_recording.sigmf-data"
+    >>> with on_disk(results(), *files) as folder:
     ...     recording = read_sigmf(folder / files[0])
     >>> recording.x.shape, recording.fs
     ((6, 2001), 2000.0)

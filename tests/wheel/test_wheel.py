@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 GENERATED = {"PKG-INFO", "setup.cfg"}
 LEFTOVERS = (
     "book/_build/html/index.html",
-    "data/valarmathi/.partial-study.csv",
+    "results/.partial-0.csv",
     "dopplerlib/figures/__pycache__/style.cpython-311.pyc",
     "tests/.ruff_cache/CACHEDIR.TAG",
 )
@@ -162,7 +162,11 @@ def test_the_sdist_holds_what_is_tracked_and_no_leftovers(sdist):
 
 def test_the_wheel_holds_the_library_and_its_data(wheel):
     library = {name for name in project_files()[0] if name.startswith("dopplerlib/")}
-    data = {f"dopplerlib/{name}" for name in project_files()[0] if name.startswith("data/")}
+    data = {
+        f"dopplerlib/{name}"
+        for name in project_files()[0]
+        if name.startswith(("data/", "results/"))
+    }
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
     assert names == library | data

@@ -1,7 +1,7 @@
 """The scheme of Fig 6 on many records: what becomes of the target, of the clutter, of the tracks.
 
-The document shows one record of each path and states no number for its scheme. `tools/macaveiu.py`
-runs the study; what it found is in ``data/macaveiu2013`` and read here.
+The document shows one record of each path and states no number for its scheme. ``make study
+NAME=vehicle_tracking`` runs the study; what it found is in ``results`` and read here.
 """
 
 import csv
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from ... import _checks, _records
-from ..._data import read_lines
+from ..._data import read_lines, results
 from ...model.polar_radar import polar_radar_h
 from ...tracking.association import gnn_assign
 from ...tracking.management import TrackManager
@@ -246,7 +246,7 @@ def outcomes():
     dict of tuple (figure, variant) to dict of str to ndarray, shape (runs,)
         For each attribute of `Outcome` its values in all runs, as floats.
     """
-    return _read("ourchain.csv", ("figure", "variant"), Outcome)
+    return _read("vehicle_tracking.tracks.csv", ("figure", "variant"), Outcome)
 
 
 @cache
@@ -258,7 +258,7 @@ def detections():
     dict of int to dict of str to ndarray, shape (runs,)
         For each figure and each attribute of `Counts` its values in all runs, as floats.
     """
-    by_figure = _read("ourdetections.csv", ("figure",), Counts)
+    by_figure = _read("vehicle_tracking.detections.csv", ("figure",), Counts)
     return {figure: values for (figure,), values in by_figure.items()}
 
 
@@ -292,7 +292,7 @@ def summary(figure, variant):
 
 def _read(name, keys, kind):
     found = {}
-    for row in csv.DictReader(read_lines("macaveiu2013", name)):
+    for row in csv.DictReader(read_lines(name, folder=results)):
         numbers = [int(row[key]) for key in keys]
         key = (numbers[0], *(list(VARIANTS)[number - 1] for number in numbers[1:]))
         found.setdefault(key, []).append([float(row[f.name]) for f in fields(kind)])

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from ... import _checks
-from ..._data import read_json
+from ..._data import read_json, results
 from ..._records import record
 from ...evaluation.intervals import Estimate, mean_interval, share_interval
 from ...signal import interpolation, phase
@@ -197,9 +197,9 @@ def saved_race():
 
     Notes
     -----
-    Made by ``make iq-race``; see the README of data/mittermaier2016.
+    Made by ``make study NAME=frequency_benchmark``; see the README of ``results``.
     """
-    saved = read_json("mittermaier2016", "iq_race.json")
+    saved = read_json("frequency_benchmark.json", folder=results)
     levels, windows = np.array(saved["snr_db"], dtype=float), saved["windows"]
     ends = [saved[end] for end in ("ratio", "low", "high")]
     ratio = {

@@ -1,6 +1,6 @@
 """A recording of six modules that never existed: IQ samples of Table 2's target, with its truth.
 
-The files ``data/mittermaier2016/simulated_iq*`` are what `write_simulated_iq` writes.
+The files ``results/simulated_recording.*`` are what `write_simulated_iq` writes.
 """
 
 from contextlib import nullcontext
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..._data import on_disk
+from ..._data import on_disk, results
 from ..._files import write_text
 from ...chain.baseband import Baseband
 from ...signal.recording import Recording, read_sigmf, write_sigmf
@@ -17,8 +17,8 @@ from .received_iq import received
 
 # Everything that the recording depends on, beside the scenario.
 SIMULATED = {"seed": 20160907, "fs": 2000.0, "snr_db": 27.0, "amplitude": 0.4, "truth_step": 0.02}
-_NAME = "simulated_iq"
-_FILES = f"{_NAME}.sigmf-meta", f"{_NAME}.sigmf-data", f"{_NAME}_truth.csv"
+_NAME = "simulated_recording"
+_FILES = f"{_NAME}.sigmf-meta", f"{_NAME}.sigmf-data", f"{_NAME}.truth.csv"
 _HEAD = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
 
 
@@ -50,8 +50,9 @@ def write_simulated_iq(folder):
     Parameters
     ----------
     folder : path-like
-        Where to write ``simulated_iq.sigmf-meta``, ``simulated_iq.sigmf-data`` and
-        ``simulated_iq_truth.csv``. Older ones are replaced.
+        Where to write ``simulated_recording.sigmf-meta``,
+        ``simulated_recording.sigmf-data`` and ``simulated_recording.truth.csv``. Older ones are
+        replaced.
 
     Returns
     -------
@@ -94,7 +95,7 @@ def read_simulated_iq(folder=None):
     ValueError
         If the recording is not sound, or its wavelength is not that of the scenario.
     """
-    shipped = on_disk("mittermaier2016", *_FILES)
+    shipped = on_disk(results(), *_FILES)
     with shipped if folder is None else nullcontext(Path(folder)) as folder:
         meta, _, table = (folder / name for name in _FILES)
         recording = read_sigmf(meta)

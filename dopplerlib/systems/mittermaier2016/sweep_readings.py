@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from ... import _checks
-from ..._data import read_json, read_lines
+from ..._data import read_json, read_lines, results
 from ..._records import record
 from .noise_sweep import Figure4, SweepReading, noise_levels
 from .published import figure4_settings
@@ -211,7 +211,7 @@ def figure4_readings(again=False):
     list of tuple
         The reading, its score in nats, and the ends of its 95 % interval.
     """
-    saved = read_json("mittermaier2016", "ourfigure4_readings.json")
+    saved = read_json("noise_sweep_readings.json", folder=results)
     rows = []
     for row in saved["again" if again else "readings"]:
         values = tuple(row.pop(name) for name in ("score", "low", "high"))
@@ -220,14 +220,14 @@ def figure4_readings(again=False):
 
 
 def saved_figure4():
-    """Return the study in full, as ``make figure4`` left it.
+    """Return the study in full, as ``make study NAME=noise_sweep`` left it.
 
     Returns
     -------
     Figure4
         All levels and points of the grid, as many draws as the figure has markers at a level.
     """
-    lines = read_lines("mittermaier2016", "ourfigure4.csv")
+    lines = read_lines("noise_sweep.csv", folder=results)
     table, levels = np.genfromtxt(lines, delimiter=",", names=True), noise_levels()
     parts = [table[name].reshape(len(levels), -1) for name in table.dtype.names[2:]]
     return Figure4(levels, *parts)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ... import _checks
-from ..._data import read_lines
+from ..._data import read_lines, results
 from ..._records import record
 from ...evaluation.intervals import Estimate, share_interval
 from .algorithms import ALGORITHMS, run_algorithms
@@ -153,13 +153,15 @@ def cell_measures(result):
 
 
 def saved_study():
-    """Read the study as ``make valarmathi-study`` wrote it.
+    """Read the study as ``make study NAME=velocity_fusion`` wrote it.
 
     Returns
     -------
     Study
     """
-    rows = np.loadtxt(read_lines("valarmathi", "study.csv"), delimiter=",", skiprows=1)
+    rows = np.loadtxt(
+        read_lines("velocity_fusion.errors.csv", folder=results), delimiter=",", skiprows=1
+    )
     snrs_db = np.unique(rows[:, 1])
     rows = rows.reshape(len(PATHS), len(snrs_db), len(ALGORITHMS), -1, rows.shape[1])
     return Study(PATHS, snrs_db, {name: rows[..., 3 + i] for i, name in enumerate(MEASURES)})
@@ -174,7 +176,9 @@ def failed_shares():
         By path and algorithm: signal-to-noise ratios in dB, and at each the share of runs whose
         error of the whole record is more than `failed_rmse` of `chosen`, with its interval.
     """
-    rows = np.loadtxt(read_lines("valarmathi", "cliff.csv"), delimiter=",", skiprows=1)
+    rows = np.loadtxt(
+        read_lines("velocity_fusion.threshold.csv", folder=results), delimiter=",", skiprows=1
+    )
     shares = {}
     for number, path in enumerate(PATHS, start=1):
         for algorithm in ALGORITHMS:

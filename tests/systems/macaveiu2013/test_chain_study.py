@@ -8,7 +8,7 @@ import pytest
 from dopplerlib.evaluation.intervals import share_interval
 from dopplerlib.systems import macaveiu2013 as paper
 from dopplerlib.systems.macaveiu2013 import chain, chain_study, polar
-from tools import macaveiu as tool
+from studies import vehicle_tracking as tool
 
 PATHS = paper.paths()
 K = paper.settings().samples
@@ -43,41 +43,16 @@ def test_the_study_covers_every_path_and_every_variant():
     assert set(chain_study.detections()) == set(PATHS)
 
 
-def test_the_tool_goes_on_where_it_stopped(tmp_path, monkeypatch):
-    """A job is done once: what is in the part is not computed again."""
-    jobs = []
-
-    def lines(job):
-        jobs.append(job)
-        if len(jobs) == 2:
-            raise KeyboardInterrupt
-        return [f"{job[0]},a,{job[1]}"], [f"{job[0]}"]
-
-    monkeypatch.setattr(tool, "lines", lines)
-    monkeypatch.setattr(tool.multiprocessing, "Pool", _OneProcess)
-    with pytest.raises(KeyboardInterrupt):
-        tool.study(tmp_path, (7, 9), 2 * tool.TOGETHER)
-    tool.study(tmp_path, (7, 9), 2 * tool.TOGETHER)
-    assert jobs == [(7, 0), (9, 0), (9, 0), (7, tool.TOGETHER), (9, tool.TOGETHER)]
-    lines = (tmp_path / "ourchain.csv").read_text(encoding="utf-8").splitlines()
-    assert lines[0].startswith("figure,variant,run,held,")
-    # Sorted by figure, whatever the order in which they were made.
-    assert lines[1:] == [f"{i},a,{first}" for i in (7, 9) for first in (0, tool.TOGETHER)]
-    assert {path.name for path in tmp_path.iterdir()} == {"ourchain.csv", "ourdetections.csv"}
-
-
-class _OneProcess:
-    def __init__(self, initializer):
-        pass
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def imap(self, function, jobs):
-        return map(function, jobs)
+def test_both_files_are_sorted_by_path_and_record(monkeypatch):
+    """Whatever the order in which they were made: by record, then by path."""
+    jobs = tool.items()
+    assert jobs[:2] == [(7, 0), (8, 0)] and len(jobs) == len(set(jobs))
+    rows = [[figure, [f"{figure},1,{first}"], [f"{figure},{first}"]] for figure, first in jobs]
+    for text, columns in zip(tool.contents(rows), ((0, 2), (0, 1)), strict=True):
+        head, *lines = text.splitlines()
+        assert head.startswith("figure,")
+        keys = [tuple(int(line.split(",")[column]) for column in columns) for line in lines]
+        assert keys == sorted(jobs)
 
 
 def scan(z, source):

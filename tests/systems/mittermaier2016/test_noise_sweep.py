@@ -1,19 +1,17 @@
 """Fig 4: the study of the error against the noise, and how its readings are compared."""
 
-import json
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
+from dopplerlib._data import read_json, results
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems.mittermaier2016.noise_sweep import grid_points, mean_norm
 from dopplerlib.systems.mittermaier2016.sweep_readings import Structure
 
-DATA = Path(__file__).resolve().parents[3] / "data" / "mittermaier2016"
 COARSE = paper.SweepReading(spacing=0.1)
 
 
@@ -204,7 +202,7 @@ def test_the_saved_scores_are_those_of_all_readings_and_what_the_seed_gives():
     scored = paper.figure4_readings()
     assert {row[0] for row in scored} == set(paper.sweep_readings())
     assert all(low <= high for _, _, low, high in scored)
-    stored = json.loads((DATA / "ourfigure4_readings.json").read_text())
+    stored = read_json("noise_sweep_readings.json", folder=results)
     assert stored["levels"] == list(paper.scored_levels())
     reading = paper.sweep_readings()[1]  # a static one: the search is several times faster
     assert reading.likelihood == "static"

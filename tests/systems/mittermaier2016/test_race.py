@@ -1,10 +1,9 @@
 """The saved race of the estimators: made again in part, and against laws that are not its own."""
 
-import json
-
 import numpy as np
 import pytest
 
+from dopplerlib._data import read_json, results
 from dopplerlib.evaluation.intervals import Estimate, mean_interval, share_interval
 from dopplerlib.signal.laws import (
     crlb_frequency_std,
@@ -13,7 +12,7 @@ from dopplerlib.signal.laws import (
 )
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems.mittermaier2016.race import RACE_FS, RACE_SAMPLES, RACE_WINDOWS
-from tools.iq_race import COLUMNS, PATH, level
+from studies.frequency_benchmark import COLUMNS, level
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +22,7 @@ def race():
 
 def test_cells_of_the_saved_race_can_be_made_again():
     """Near the thresholds of both: some of the estimates are outliers, and some are not."""
-    saved = json.loads(PATH.read_text(encoding="utf8"))
+    saved = read_json("frequency_benchmark.json", folder=results)
     k = saved["snr_db"].index(-7)
     for name, found in level(-7, ["maximum likelihood", "Kay"]).items():
         assert found == [saved[column][name][k] for column in COLUMNS]

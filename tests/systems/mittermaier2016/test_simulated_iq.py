@@ -1,4 +1,4 @@
-"""The recording in data/ is the one that its seed gives, and holds what its README says."""
+"""The recording in results/ is the one that its seed gives, and holds what its README says."""
 
 import json
 import re
@@ -6,11 +6,11 @@ import re
 import numpy as np
 import pytest
 
+from dopplerlib._data import results
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.published import data_file
 
-DATA = data_file()
-README = (DATA / "README.md").read_text(encoding="utf-8")
+RESULTS = results()
+README = (RESULTS / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -21,24 +21,24 @@ def again(tmp_path_factory):
 @pytest.mark.parametrize("number", [1, 2], ids=["samples", "truth"])
 def test_the_files_are_written_again_byte_for_byte(again, number):
     """Rounding to 16 bits hides the last bits in which processors differ."""
-    assert again[number].read_bytes() == (DATA / again[number].name).read_bytes()
+    assert again[number].read_bytes() == (RESULTS / again[number].name).read_bytes()
 
 
 def test_so_are_the_settings_but_for_the_version_of_the_format(again):
-    both = [json.loads(path.read_text()) for path in (again[0], DATA / again[0].name)]
+    both = [json.loads(path.read_text()) for path in (again[0], RESULTS / again[0].name)]
     for settings in both:
         del settings["global"]["core:version"]
     assert both[0] == both[1]
 
 
 def test_the_files_are_small():
-    assert sum(path.stat().st_size for path in DATA.glob("simulated_iq*")) < 100_000
+    assert sum(path.stat().st_size for path in RESULTS.glob("simulated_recording*")) < 100_000
 
 
 def test_another_seed_gives_another_recording(monkeypatch, tmp_path):
     monkeypatch.setitem(paper.SIMULATED, "seed", 1)
     other = paper.write_simulated_iq(tmp_path)
-    assert other[1].read_bytes() != (DATA / other[1].name).read_bytes()
+    assert other[1].read_bytes() != (RESULTS / other[1].name).read_bytes()
 
 
 def test_the_readme_tells_the_settings():

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from dopplerlib._data import read_lines, results
 from dopplerlib.evaluation.intervals import Estimate, mean_interval, share_interval
 from dopplerlib.systems import valarmathi as system
 from dopplerlib.systems.valarmathi import study as made
 from dopplerlib.systems.valarmathi.published import PATHS
-from tools import valarmathi as tool
+from studies import velocity_fusion as tool
 
 OWN = system.chosen()
 FALSE_ALARM = 1e-6
@@ -34,7 +35,7 @@ def table():
 def lines(name, cell):
     """Return the rows of one cell in a file, as text without path and ratio."""
     head = ",".join(cell) + ","
-    rows = system.published.data_file(name).read_text(encoding="utf-8").splitlines()[1:]
+    rows = read_lines(f"velocity_fusion.{name}.csv", folder=results)[1:]
     return [row.removeprefix(head).split(",") for row in rows if row.startswith(head)]
 
 
@@ -42,7 +43,9 @@ def test_the_study_covers_every_path_ratio_and_algorithm_with_enough_runs(study)
     assert study.paths == PATHS
     np.testing.assert_array_equal(study.snrs_db, made.SNRS_DB)
     assert (study.snrs_db[0], study.snrs_db[-1], np.ptp(np.diff(study.snrs_db))) == (-10, 40, 0)
-    rows = np.loadtxt(system.published.data_file("study.csv"), delimiter=",", skiprows=1)
+    rows = np.loadtxt(
+        read_lines("velocity_fusion.errors.csv", folder=results), delimiter=",", skiprows=1
+    )
     keys, counts = np.unique(rows[:, :3], axis=0, return_counts=True)
     assert len(keys) == len(PATHS) * len(made.SNRS_DB) * len(system.ALGORITHMS)
     assert set(counts) == {made.RUNS} and made.RUNS >= 100
@@ -64,8 +67,8 @@ def test_a_cell_comes_out_again_alone(table, cell):
     """
     runs = 8
     again = system.study_cell(PATHS[int(cell[0]) - 1], float(cell[1]), table, runs)
-    rows = np.array(tool.study_rows(system.cell_measures(again))).reshape(6, runs, -1)
-    saved = np.array(lines("study.csv", cell)).reshape(6, made.RUNS, -1)[:, :runs]
+    rows = np.array(tool.error_rows(system.cell_measures(again))).reshape(6, runs, -1)
+    saved = np.array(lines("errors", cell)).reshape(6, made.RUNS, -1)[:, :runs]
     assert (rows == saved).mean() > 0.9
     fixed = [0, 2, 5]
     np.testing.assert_allclose(rows[fixed].astype(float), saved[fixed].astype(float), rtol=2e-3)
@@ -79,7 +82,7 @@ def test_a_cell_comes_out_again_alone(table, cell):
 def test_the_number_of_failed_runs_comes_out_again(table):
     again = system.cell_measures(system.study_cell("path 2", -8.0, table, 8))
     for (a, runs, failed), saved in zip(
-        tool.cliff_rows(again), lines("cliff.csv", ("2", "-8")), strict=True
+        tool.failure_rows(again), lines("threshold", ("2", "-8")), strict=True
     ):
         share = int(saved[2]) / int(saved[1])
         assert [str(a), runs] == [saved[0], 8]
@@ -104,27 +107,24 @@ def test_another_seed_agrees_within_what_chance_allows(study, table):
         assert abs(values.mean() - saved.mean()) < Z * scatter, (algorithm, measure)
 
 
-def test_the_tool_goes_on_where_it_stopped(tmp_path, monkeypatch):
-    made_cells = []
-
-    def cell(name, snr_db, table, runs):
-        made_cells.append((name, snr_db))
-        if len(made_cells) == 3:
-            raise KeyboardInterrupt
-        return name, snr_db, runs
-
-    monkeypatch.setattr(tool, "study_table", lambda: None)
-    monkeypatch.setattr(tool, "study_cell", cell)
-    monkeypatch.setattr(tool, "cell_measures", lambda result: result)
-    target = tmp_path / "cliff.csv"
-    with pytest.raises(KeyboardInterrupt):
-        tool.make(target, [0.0], 7, lambda result: [[1, result[2], 0], [2, result[2], 1]])
-    assert not target.exists()
-    tool.make(target, [0.0], 7, lambda result: [[1, result[2], 0], [2, result[2], 1]])
-    assert made_cells == [(name, 0.0) for name in (*PATHS, PATHS[2])]
-    rows = [f"{path},0,{a},7,{a - 1}" for path in (1, 2, 3) for a in (1, 2)]
-    assert target.read_text().splitlines() == [tool.HEADS["cliff.csv"], *rows]
-    assert list(tmp_path.iterdir()) == [target]
+def test_either_file_has_its_cells_in_the_order_of_paths_and_ratios(monkeypatch):
+    """Made of what a cell was made with: number of the path, ratio and runs."""
+    monkeypatch.setattr(tool.made, "study_table", lambda: None)
+    monkeypatch.setattr(tool.made, "study_cell", lambda name, snr_db, table, runs: runs)
+    monkeypatch.setattr(tool.made, "cell_measures", lambda runs: runs)
+    monkeypatch.setattr(tool, "error_rows", lambda runs: [["errors", runs]])
+    monkeypatch.setattr(tool, "failure_rows", lambda runs: [["failures", runs]])
+    parameters = {"snrs_db": [0.0, 5.0], "threshold_snrs_db": [-1.5]}
+    monkeypatch.setattr(tool, "PARAMETERS", tool.PARAMETERS | parameters)
+    errors, failures = tool.contents(list(tool.rows(tool.items())))
+    assert errors.splitlines() == [
+        tool.HEADS[0],
+        *(f"{path},{snr_db},errors,{made.RUNS}" for path in (1, 2, 3) for snr_db in (0, 5)),
+    ]
+    assert failures.splitlines() == [
+        tool.HEADS[1],
+        *(f"{path},-1.5,failures,{made.CLIFF_RUNS}" for path in (1, 2, 3)),
+    ]
 
 
 def test_errors_at_constant_velocity_fall_with_the_amplitude_of_the_noise(study):

@@ -43,7 +43,8 @@ def started(path, items, **settings):
     Parameters
     ----------
     path : pathlib.Path
-        File that the study writes; the part is forgotten when the block ends without an error.
+        How the names of the files begin that the study writes. The part is forgotten when the
+        block ends without an error.
     items : sequence
         What there is a row for. Their `repr` tells them apart.
     **settings

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from dopplerlib._progress import progress_bar
-from tools import study as tool
+from studies import _resume as tool
 
 
 def squares(path, items, stop_at=None, **settings):
@@ -59,15 +59,15 @@ def test_other_code_data_or_versions_start_over(path, monkeypatch, what):
     assert squares(path, range(5)) == [0, 1, 2, 3, 4]
 
 
-def test_the_code_of_a_study_is_that_of_library_tools_and_data(monkeypatch, tmp_path):
+def test_the_code_of_a_study_is_that_of_library_studies_and_data(monkeypatch, tmp_path):
     """A changed byte of each counts, and what a study itself leaves there does not."""
     files = {}
-    for folder, name in (("dopplerlib", "a.py"), ("tools", "b.py"), ("data", "paper/c.toml")):
+    for folder, name in (("dopplerlib", "a.py"), ("studies", "b.py"), ("data", "paper/c.toml")):
         files[folder] = tmp_path / folder / name
         files[folder].parent.mkdir(parents=True)
         files[folder].write_text("1")
     monkeypatch.setattr(tool.dopplerlib, "__file__", str(tmp_path / "dopplerlib" / "__init__.py"))
-    monkeypatch.setattr(tool, "__file__", str(tmp_path / "tools" / "study.py"))
+    monkeypatch.setattr(tool, "__file__", str(tmp_path / "studies" / "_resume.py"))
     monkeypatch.setattr(tool, "ROOT", tmp_path)
     found = {tool.made_with()["code"]}
     for number, path in enumerate(files.values(), start=2):

@@ -1,0 +1,38 @@
+"""Errors of the initialization at all noise levels of Fig 4, under the reading that is the default.
+
+Twenty seconds on two processors. 315 places of the target, 31 noise levels, and as many velocities
+as the figure of Mittermaier et al. has markers at a level.
+"""
+
+from dataclasses import asdict
+
+import numpy as np
+
+from dopplerlib.systems.mittermaier2016 import SweepReading, figure4
+
+FILES = (".csv",)
+PARAMETERS = {"seed": 4, **asdict(SweepReading())}
+
+
+def items():
+    """Return what is computed in one go."""
+    return ["all levels"]
+
+
+def rows(items):
+    """Yield the columns of the table."""
+    for _ in items:
+        result = figure4(rng=np.random.default_rng(PARAMETERS["seed"]), progress=True)
+        yield {name: value.tolist() for name, value in vars(result).items()}
+
+
+def contents(rows):
+    """Return the table: mean and median errors, and their bounds."""
+    (columns,) = rows
+    variances = columns.pop("variance")
+    lines = [["variance_hz2", "series", *columns]]
+    for level, variance in enumerate(variances):
+        for series in range(len(columns["position"][level])):
+            values = (column[level][series] for column in columns.values())
+            lines.append([f"{variance:.6g}", series + 1, *(f"{value:.6g}" for value in values)])
+    return ["".join(",".join(map(str, line)) + "\n" for line in lines)]

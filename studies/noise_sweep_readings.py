@@ -1,0 +1,60 @@
+"""Likelihood of the dots of Fig 4 under every reading of its text.
+
+Some minutes on two processors. Every reading of Mittermaier et al. is simulated from the same seed,
+at some of the levels; the best one with either likelihood is repeated from another seed.
+"""
+
+import json
+from dataclasses import asdict
+
+import numpy as np
+
+from dopplerlib.systems.mittermaier2016 import (
+    figure4,
+    figure4_score,
+    published_figure4,
+    scored_levels,
+    sweep_readings,
+)
+
+FILES = (".json",)
+PARAMETERS = {"seed": 4, "draws": 24, "levels": list(scored_levels()), "seed_again": 11}
+
+
+def items():
+    """Return the readings."""
+    return sweep_readings()
+
+
+def rows(items):
+    """Yield the score of each reading."""
+    for reading in items:
+        yield score(reading, PARAMETERS["seed"])
+
+
+def score(reading, seed):
+    """Return the fields of a reading, its score, and the interval of the score."""
+    result = figure4(
+        scored_levels(),
+        PARAMETERS["draws"],
+        rng=np.random.default_rng(seed),
+        reading=reading,
+        bound=False,
+    )
+    values = figure4_score(result, published_figure4(), rng=np.random.default_rng(seed))
+    rounded = (round(value, 1) for value in values)
+    return asdict(reading) | dict(zip(("score", "low", "high"), rounded, strict=True))
+
+
+def contents(rows):
+    """Return the table of scores."""
+    best = [
+        max(range(len(rows)), key=lambda i: (rows[i]["likelihood"] == name, rows[i]["score"]))
+        for name in ("moving", "static")
+    ]
+    again = [score(sweep_readings()[i], PARAMETERS["seed_again"]) for i in best]
+    parts = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
+    for name, table in {"again": again, "readings": rows}.items():
+        lines = ",\n".join("    " + json.dumps(row) for row in table)
+        parts.append(f'  "{name}": [\n{lines}\n  ]')
+    return ["{\n" + ",\n".join(parts) + "\n}\n"]

@@ -1,0 +1,107 @@
+"""One command runs every study, and every result says how it was made.
+
+That the numbers come out again is tested beside the system that each study is about.
+"""
+
+import json
+import sys
+import tomllib
+from importlib import import_module
+from types import ModuleType
+
+import pytest
+
+from studies import __main__ as command
+
+NAMES = command.names()
+
+
+def stored(name):
+    """Return the text of the file that says how the results of a study were made."""
+    return (command.RESULTS / f"{name}.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_parameters_beside_a_result_are_those_of_its_study(name):
+    """Else the study has changed since: run it again."""
+    told = tomllib.loads(stored(name))
+    made_now = command.provenance(import_module(f"studies.{name}"), name)
+    assert told["parameters"] == tomllib.loads(made_now)["parameters"]
+    assert told["versions"].keys() == {"python", "dopplerlib", "numba", "numpy", "scipy"}
+    assert stored(name).splitlines()[:2] == made_now.splitlines()[:2]
+
+
+def test_every_result_has_a_study_and_every_study_its_results():
+    made = {f"{name}.toml" for name in NAMES}
+    for name in NAMES:
+        study = import_module(f"studies.{name}")
+        made |= {path.name for path in command.files(study, name)}
+    there = {path.name for path in command.RESULTS.iterdir() if path.suffix != ".part"}
+    assert there == made | {"README.md"}
+
+
+def test_without_a_name_all_studies_are_listed(capsys):
+    command.main([])
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_help_says_what_a_study_computes_and_what_it_costs(name, capsys):
+    command.main([name, "--help"])
+    first, empty, second = capsys.readouterr().out.splitlines()[:3]
+    assert first.endswith(".") and not empty
+    assert any(unit in second.lower() for unit in ("second", "minute")), second
+
+
+def test_an_unknown_study_is_named_with_those_that_there_are(capsys):
+    with pytest.raises(SystemExit):
+        command.main(["guess"])
+    told = capsys.readouterr().err
+    assert "invalid choice: 'guess'" in told and all(name in told for name in NAMES)
+
+
+@pytest.fixture
+def squares(monkeypatch):
+    """Return a study of squares that is interrupted at the item `stop`, and what it worked on."""
+    study = ModuleType("studies.squares")
+    study.PARAMETERS, study.FILES = {"seed": 1, "levels": [0, 1, 2]}, (".a.json", ".b.bin")
+    study.worked, study.stop, study.closed = [], None, 0
+
+    def rows(items):
+        try:
+            for item in items:
+                if item == study.stop:
+                    raise KeyboardInterrupt
+                study.worked.append(item)
+                yield item**2
+        finally:
+            study.closed += 1
+
+    study.items = lambda: range(3)
+    study.rows = rows
+    study.contents = lambda rows: [json.dumps(rows), bytes(rows)]
+    monkeypatch.setitem(sys.modules, "studies.squares", study)
+    monkeypatch.setattr(command, "about", lambda name: "Squares.\n\nA second.")
+    return study
+
+
+def test_a_study_writes_all_its_files_and_what_made_them(squares, tmp_path):
+    command.run("squares", tmp_path)
+    assert (tmp_path / "squares.a.json").read_text() == "[0, 1, 4]"
+    assert (tmp_path / "squares.b.bin").read_bytes() == bytes([0, 1, 4])
+    told = tomllib.loads((tmp_path / "squares.toml").read_text())
+    assert told["parameters"] == squares.PARAMETERS
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_an_interrupted_study_writes_nothing_and_goes_on(squares, tmp_path):
+    squares.stop = 2
+    with pytest.raises(KeyboardInterrupt):
+        command.run("squares", tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["squares.part"]
+    assert squares.closed == 1  # a pool of processes would have ended
+    squares.stop = None
+    command.run("squares", tmp_path)
+    assert squares.worked == [0, 1, 2]
+    assert (tmp_path / "squares.a.json").read_text() == "[0, 1, 4]"
