@@ -13,12 +13,13 @@ from hypothesis import strategies as st
 from dopplerlib import RadarArray, Scenario
 from dopplerlib.replication.claims import RELATIONS, read_claims
 from dopplerlib.replication.deviations import read_deviations
+from dopplerlib.replication.published import Published, read_published
 from dopplerlib.signal.recording import read_sigmf, read_wav
 from tests.fuzz import valid_files
 from tests.fuzz.mutations import bytes_of, json_of, toml_of
 from tests.fuzz.oracle import limited
 from tests.fuzz.run import bounded_memory
-from tests.fuzz.valid_files import CLAIMS, DEVIATIONS, SCENARIO
+from tests.fuzz.valid_files import CLAIMS, DEVIATIONS, PUBLISHED, SCENARIO
 
 
 @pytest.fixture(scope="module")
@@ -118,11 +119,22 @@ def test_deviations(broken):
         assert all(isinstance(text, str) for text in (*texts, *entry.claims))
 
 
+@many(110, toml_of(PUBLISHED) | bytes_of(PUBLISHED.encode()))
+def test_published(broken):
+    found = read(read_published, {"published.toml": broken}, "published.toml")
+    for table in [found, *(found.table.values() if found else ())]:
+        assert not isinstance(table, Published) or table.where
+
+
 def test_what_is_broken_was_sound(valid):
     """The files that the others break are read when they are whole."""
     assert sound(read(read_sigmf, valid, "walk.sigmf-meta"))
     assert sound(read(lambda path: read_wav(path, 24e9), valid, "walk.wav"))
     assert json.loads(valid["walk.sigmf-meta"])["global"]
-    for reader, text in ((read_claims, CLAIMS), (read_deviations, DEVIATIONS)):
+    for reader, text in (
+        (read_claims, CLAIMS),
+        (read_deviations, DEVIATIONS),
+        (read_published, PUBLISHED),
+    ):
         assert read(reader, {"a.toml": text.encode()}, "a.toml")
     assert read(Scenario.from_toml, {"a.toml": SCENARIO.encode()}, "a.toml").samples == 101

@@ -12,6 +12,7 @@ import numpy as np
 from dopplerlib import Scenario
 from dopplerlib.replication.claims import read_claims
 from dopplerlib.replication.deviations import read_deviations
+from dopplerlib.replication.published import read_published
 from dopplerlib.signal.recording import Recording, read_sigmf, read_wav, write_sigmf, write_wav
 
 RNG = np.random.default_rng(1)
@@ -80,6 +81,17 @@ choice = "It is there."
 page = "ekf"
 cell = "table1"
 """
+PUBLISHED = """\
+where = "Section 4"
+T = 0.1
+[filter]
+where = "ours: not stated"
+windows = [8, 12]
+boxes = [[0.0, -1.0], [2.0, 1.0]]
+[[path]]
+title = "away"
+start = [0.0, 5.0]
+"""
 
 
 @functools.cache
@@ -89,7 +101,12 @@ def folder():
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     write_sigmf(folder / "walk", RECORDING)
     write_wav(folder / "walk.wav", RECORDING)
-    for name, text in (("scenario", SCENARIO), ("claims", CLAIMS), ("deviations", DEVIATIONS)):
+    for name, text in (
+        ("scenario", SCENARIO),
+        ("claims", CLAIMS),
+        ("deviations", DEVIATIONS),
+        ("published", PUBLISHED),
+    ):
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     (folder / "other").write_text("something else", encoding="utf-8")
     os.mkfifo(folder / "fifo")
@@ -104,6 +121,7 @@ def calls():
         Scenario.from_toml: {"path": here / "scenario.toml"},
         read_claims: {"path": here / "claims.toml"},
         read_deviations: {"path": here / "deviations.toml"},
+        read_published: {"path": here / "published.toml"},
         read_sigmf: {"paths": here / "walk.sigmf-meta"},
         read_wav: {"paths": here / "walk.wav", "carrier": 24e9},
         write_sigmf: {"path": here / "new", "recording": RECORDING},
