@@ -45,15 +45,17 @@ book: $(VENV)/.ready  ## build the book: book/_build/html/index.html
 	$(PY) -m tools.book
 
 .PHONY: test
-test: $(VENV)/.ready  ## check everything: style, book without warnings, tests, doctests, notebooks
+test: $(VENV)/.ready  ## check everything: style, book without warnings, tests, examples, chapters
 	$(MAKE) --jobs=2 lint book tests
 
+# The tests, the examples in docstrings and the chapters; all that numba compiles is compiled once, for
+# every process that follows.
 .PHONY: tests
-tests: compile  ## run the tests, the examples in docstrings, and the chapters
+tests: compile
 	$(PY) -m pytest -n logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 .PHONY: compile
-compile: $(VENV)/.ready  ## compile all that numba compiles, once for every process that follows
+compile: $(VENV)/.ready
 	$(PY) -m tools.compile
 
 .PHONY: test-matrix
@@ -62,7 +64,7 @@ test-matrix:  ## test the library with every Python that is found, and with the 
 
 # FUZZ_SEED=... tries the same again, FUZZ_FROM=... begins with that function.
 .PHONY: fuzz
-fuzz: $(VENV)/.ready  ## try 10 000 odd arguments on every public function: an hour or so
+fuzz: $(VENV)/.ready  ## try 10 000 odd arguments on every public function: an hour
 	$(PY) -m tests.fuzz $(if $(FUZZ_SEED),--seed $(FUZZ_SEED)) $(if $(FUZZ_FROM),--from $(FUZZ_FROM))
 
 .PHONY: lint
@@ -96,12 +98,8 @@ study: $(VENV)/.ready  ## run the study NAME=... and write results/NAME.* (list 
 	$(PY) -m studies $(NAME)
 
 .PHONY: bench
-bench: $(BENCH)/.ready  ## compare the filter with other libraries: speed and agreement
-	$(BENCH)/bin/python benchmarks/ekf.py
-
-.PHONY: bench-iq
-bench-iq: $(VENV)/.ready  ## time from IQ to Doppler: a second of six sensors
-	$(PY) benchmarks/iq.py
+bench: $(BENCH)/.ready  ## run benchmarks/NAME.py; without NAME the filter beside other libraries
+	$(BENCH)/bin/python benchmarks/$(or $(NAME),ekf).py
 
 .PHONY: lock
 lock: $(if $(filter .venv-uv/%,$(UV)),.venv-uv/.ready)  ## renew all lock files

@@ -1,6 +1,6 @@
 """From IQ to Doppler: time for a second of six sensors, and for a sweep over many windows.
 
-``make bench-iq`` prints Markdown. Processor time of one thread: the
+``make bench NAME=iq`` prints Markdown. Processor time of one thread: the
 wall time of a machine that does nothing else. Rounds are interleaved, the first does not count.
 """
 

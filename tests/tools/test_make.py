@@ -1,0 +1,90 @@
+"""Every command that a text names is there: targets of make, their NAME, and modules to run."""
+
+import re
+import subprocess
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from studies.__main__ import names
+from tools.notebooks import ROOT, chapters
+
+MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
+TARGETS = set(re.findall(r"^\.PHONY: (\S+)$", MAKEFILE, flags=re.MULTILINE)) - {"FORCE"}
+NAMED = {
+    "chapter": {path.stem for path in chapters()},
+    "study": set(names()),
+    "bench": {path.stem for path in (ROOT / "benchmarks").glob("*.py")},
+}
+SUFFIXES = {"", ".cfg", ".in", ".ipynb", ".md", ".py", ".toml", ".yaml", ".yml"}
+FOLDERS = (
+    ".ci .github benchmarks book data decisions dopplerlib results studies tests tools".split()
+)
+# A command stands in code, `make` or ``make``, or is a line of a script.
+COMMAND = re.compile(
+    r"(?:`|run: |exec |^(?=make [\w-]+(?: NAME=\w+)?(?: *#.*)?$))"
+    r"make ([a-z][a-z-]*)(?: NAME=([\w.]+))?",
+    flags=re.MULTILINE,
+)
+MODULE = re.compile(r"python -m ((?:dopplerlib|studies|tests|tools)[\w.]*\w)")
+
+
+def texts():
+    """Yield every text of the project, with its path."""
+    outside = (path for path in ROOT.iterdir() if path.is_file())
+    inside = (path for folder in FOLDERS for path in (ROOT / folder).rglob("*") if path.is_file())
+    for path in (*outside, *inside):
+        if path.suffix in SUFFIXES and "_build" not in path.parts and path != Path(__file__):
+            yield path, path.read_text(encoding="utf-8", errors="replace")
+
+
+def unknown(text):
+    """Return the commands in a text that are not there."""
+    found = []
+    for target, name in COMMAND.findall(text):
+        if target not in TARGETS or (name.strip(".") and name not in NAMED.get(target, ())):
+            found.append(f"make {target} {name}".strip())
+    return found + [module for module in MODULE.findall(text) if find_spec(module) is None]
+
+
+def test_every_command_that_a_text_names_is_there():
+    found = {path.relative_to(ROOT).as_posix(): unknown(text) for path, text in texts()}
+    assert {path: names for path, names in found.items() if names} == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("run `make book`", []),
+        ("run `make books`", ["make books"]),
+        ("      - run: make tests-matrix\n", ["make tests-matrix"]),
+        ("sh\nmake bench NAME=iq   # a minute\nmake bench-iq # a minute\n", ["make bench-iq"]),
+        ("what others\nmake of it", []),
+        ("`make study NAME=...` or `make study NAME=noise_sweep`", []),
+        ("`make study NAME=guess`", ["make study guess"]),
+        ("`make lint NAME=ekf`", ["make lint ekf"]),
+        ("python -m tools.notebooks --text", []),
+        ("python -m tools.guess", ["tools.guess"]),
+    ],
+)
+def test_an_unknown_command_is_found(text, found):
+    assert unknown(text) == found
+
+
+def test_the_help_lists_every_target_but_the_two_steps_of_test():
+    shown = subprocess.run(["make", "help"], cwd=ROOT, capture_output=True, text=True, check=True)
+    listed = [line.split()[0] for line in shown.stdout.splitlines()]
+    assert set(listed) == TARGETS - {"tests", "compile"}
+    assert len(listed) == len(set(listed)) <= 15
+
+
+def test_a_name_becomes_the_file_of_the_chapter():
+    made = subprocess.run(
+        ["make", "-n", "chapter", "NAME=ekf iq"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "tools.notebooks book/ekf.ipynb book/iq.ipynb\n" in made.stdout
