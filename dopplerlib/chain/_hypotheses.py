@@ -1,4 +1,14 @@
-"""Hypotheses about the start of the whole chain, and the filters that begin with them."""
+"""Hypotheses about the start of the whole chain, and the filters that begin with them.
+
+Mirrored starts explain the first samples equally well: a plane array cannot tell its two sides
+apart, nor a line of sensors the places around it. So every part of the box keeps its best state, a
+filter begins with each, and what follows decides: the score of a hypothesis is minus twice its log
+likelihood,
+
+    chi^2 of the start + sum over samples (nu' S^-1 nu + log |S|),
+
+up to a constant that all hypotheses share.
+"""
 
 from itertools import product
 
@@ -38,13 +48,16 @@ def hypotheses(z, std, array, T, apart, boxes):
     All shifts of a record get the same weight, so the search does not depend on how large it is.
     A deviation is infinite where a shift is missing.
     """
+    # Overlapping windows share samples, and their errors are correlated. Of every `apart` windows
+    # one is taken, counted back from the last: the start is the state at its time.
     early = slice((z.shape[1] - 1) % apart, None, apart)
     z, missing = z[:, early], np.isinf(std[:, early])
     total = np.sum(np.where(missing, 0.0, std[:, early]) ** 2, axis=(1, 2))
     variance = total / np.maximum(np.sum(~missing, axis=(1, 2)), 1)
+    # The search gets a deviation of one; its chi-squares are divided by the variance afterwards.
     found = [ml_start(z, array, 1.0, apart * T, box, at="last") for box in boxes]
     states, costs = [s.x for s in found], [s.cost for s in found]
-    if len(boxes) == 1:
+    if len(boxes) == 1:  # no plane cuts the box: the second-best state is the other hypothesis
         states, costs = [*states, found[0].second_x], [*costs, found[0].second_cost]
     weights = np.where(missing, np.inf, np.sqrt(variance)[:, None, None])
     return np.stack(states, axis=1), np.stack(costs, axis=1) / variance[:, None], weights
@@ -93,6 +106,8 @@ def _misfit(nis, factor):
 
 def _memory(innovation, factor):
     """Return the autocorrelation of normalized innovations at one sample, over all modules."""
+    # S = L L', so u = L^-1 nu has the covariance I, and sum u_k'u_(k-1) / sum u_k'u_k is near zero
+    # for a filter whose model holds.
     normal = np.empty_like(innovation)
     for i in range(innovation.shape[-1]):  # forward substitution, for all samples at once
         known = np.sum(factor[:, i, :i] * normal[:, :i], axis=-1)
@@ -110,12 +125,14 @@ def start_covariance(x, array, std, T, free):
     F[:, :3, 3:] = back[:, None, None] * np.eye(3)
     # An infinite deviation leaves nothing of the slope.
     slopes = doppler_jacobian(np.einsum("kij,j->ki", F, x), array) @ F / std[..., None]
+    # The covariance is (J'J)^-1 with J = `slopes`. With columns scaled to length one,
+    # J D^-1 = U W V', it is D^-1 V W^-2 V' D^-1: the product of a root with its transpose.
     slopes = np.compress(free, slopes.reshape(-1, 6), axis=1)
     scale = np.linalg.norm(slopes, axis=0)
     if not scale.all():
         return None
     _, w, vt = np.linalg.svd(slopes / scale, full_matrices=False)
-    if w[-1] < 1e-6 * w[0]:
+    if w[-1] < 1e-6 * w[0]:  # a direction that the start says nothing of
         return None
     root = vt.T / w / scale[:, None]
     P = np.zeros((6, 6))

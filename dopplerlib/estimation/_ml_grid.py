@@ -1,7 +1,16 @@
 """A grid of positions with the best velocity at each, compiled.
 
-At a given position the Doppler shift is linear in the velocity (variable projection). What of the
-linear problem does not depend on the measurements is prepared once for all runs.
+At a given position p the Doppler shift is linear in the velocity v (variable projection):
+
+    w_n h_n = (A v)_n,   row n of A = w_n (c / rho_n) (s_n - p)',   rho_n = |s_n - p|.
+
+With A = Q R, Q of orthonormal columns, and y the weighted measurements,
+
+    |A v - y|^2 = |y|^2 - |Q'y|^2 + |R v - Q'y|^2,
+
+and the last term is zero at the best velocity, unless the box forbids it. Q and R do not depend on
+the measurements: `project` makes them once for all runs, and `scan` is left with Q'y at each point.
+Arrays have the grid last, so that the inner loops run over neighbors in memory.
 """
 
 import numpy as np
@@ -31,6 +40,7 @@ def project(grid, w, positions, c, lower, upper, Q, R, bound, order, rate):
             rate[n, p] = c / np.sqrt(square) if square > 0 else 0.0
             for i in range(3):
                 A[n, i] *= w[n] * rate[n, p]
+        # Gram-Schmidt with pivoting: of the columns that are left, the longest comes next.
         free[:] = True
         for a in range(3):
             most, column = -1.0, -1
@@ -53,6 +63,7 @@ def project(grid, w, positions, c, lower, upper, Q, R, bound, order, rate):
             R[6 + a, p] = inverse
             for n in range(len(positions)):
                 Q[a, n, p] = A[n, column] * inverse
+            # What the others have along this column goes into R, and out of them.
             for i in range(3):
                 if free[i]:
                     U[a, i] = 0.0
@@ -82,7 +93,7 @@ def scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
     for n in range(y.size):
         total += y[n] * y[n]
         moving |= spread[n] > 0
-    a, b, e = v[0], v[1], v[2]
+    a, b, e = v[0], v[1], v[2]  # rows of Q'y first, then of the velocity
     a[:] = 0.0
     b[:] = 0.0
     e[:] = 0.0
@@ -93,6 +104,7 @@ def scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
             e[p] += Q[2, n, p] * y[n]
     for p in range(score.size):
         q0, q1, q2 = a[p], b[p], e[p]
+        # Back substitution in R v = Q'y, from the component that is determined least.
         v2 = min(max(q2 * R[8, p], bound[2, 0, p]), bound[2, 1, p])
         v1 = (q1 - R[4, p] * v2) * R[7, p]
         v1 = min(max(v1, bound[1, 0, p]), bound[1, 1, p])
@@ -113,7 +125,8 @@ def scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
             u0 = R[0, p] * v0 + R[1, p] * v1 + R[2, p] * v2
             u1 = R[3, p] * v1 + R[4, p] * v2
             radial = (Q[0, n, p] * u0 + Q[1, n, p] * u1 + Q[2, n, p] * R[5, p] * v2) / (c * w[n])
-            # The shift of a target at constant velocity falls by speed across, squared, per range.
+            # The shift of a target at constant velocity falls by speed across, squared, per range:
+            # dh/dt = -(c / rho) (|v|^2 - (u'v)^2), with u the line of sight and u'v = `radial`.
             r = slope[n] + rate[n, p] * (v0 * v0 + v1 * v1 + v2 * v2 - radial * radial)
             score[p] += spread[n] * r * r
 
@@ -123,7 +136,9 @@ def lowest_minima(score, shape, low, spare, chosen):
     """Write the lowest points that no neighbor is below to `chosen`; return how many."""
     copy(score, low)
     inner = score.size
-    for n in shape:  # the minimum of three neighbors along one axis after the other
+    # `low` becomes the minimum over a point and its 26 neighbors: that of three points along one
+    # axis, of these minima along the next, and so on. `inner` is the stride of the axis.
+    for n in shape:
         inner //= n
         low, spare = spare, low
         for i in range(score.size // inner):
@@ -136,6 +151,7 @@ def lowest_minima(score, shape, low, spare, chosen):
     for p in range(score.size):
         if score[p] > low[p] or (count == STARTS and score[p] >= score[chosen[count - 1]]):
             continue
+        # Insertion into the sorted list of the lowest so far.
         count = min(count + 1, STARTS)
         place = count - 1
         while place > 0 and score[chosen[place - 1]] > score[p]:

@@ -1,6 +1,11 @@
 """Refine a state: Levenberg-Marquardt in a box, compiled.
 
-The cost is chi-square: the sum of squared residuals over their standard deviations.
+The cost is chi-square: the sum of squared residuals over their standard deviations. With residuals
+r and their Jacobian J, H = J'J and g = J'r, the cost after a step d is about
+
+    r'r + 2 g'd + d'H d,
+
+whose damped minimum in the box is the step: (H + factor diag H) d = -g where the box is far.
 """
 
 import numpy as np
@@ -70,7 +75,8 @@ def normal_equations(x, t, z, w, positions, c, H, g):
 def _solve(H, damping, rhs, held, L, d):
     """Solve (H + diag(damping)) d = rhs for the components not held; those of `d` that are stay.
 
-    By L D L' with D kept as its inverse on the diagonal of `L`.
+    By L D L' with D kept as its inverse on the diagonal of `L`. What is held moves to the
+    right-hand side: H_ff d_f = rhs_f - H_fh d_h.
     """
     free = np.empty(6, np.int64)
     m = 0
@@ -119,14 +125,16 @@ def _boxed_step(H, g, damping, x, lower, upper, first, held, L, d):
     for i in range(6):
         rhs[i] = -g[i]
         d[i] = 0.0
+        # Held from the beginning: what is on a bound and would be pushed out of the box.
         held[i] = (
             i < first
             or lower[i] == upper[i]
             or (x[i] <= lower[i] and g[i] > 0)
             or (x[i] >= upper[i] and g[i] < 0)
         )
-    for _ in range(6):
+    for _ in range(6):  # each time one more component is held
         _solve(H, damping, rhs, held, L, d)
+        # The offender is the component that meets its bound after the smallest share of the step.
         share, offender = 1.0, -1
         for i in range(first, 6):
             room = (upper[i] if d[i] > 0 else lower[i]) - x[i]
@@ -162,7 +170,7 @@ def refine(x, t, z, w, positions, c, lower, upper, size, iterations):
         for i in range(6):
             damping[i] = factor * H[i, i]
         _boxed_step(H, g, damping, x, lower, upper, ALL, held, L, d)
-        promise = 0.0
+        promise = 0.0  # by how much the quadratic model says that the cost falls: -2 g'd - d'H d
         for i in range(6):
             promise -= 2 * g[i] * d[i]
             for j in range(6):
@@ -170,10 +178,13 @@ def refine(x, t, z, w, positions, c, lower, upper, size, iterations):
         move(x, d, lower, upper, new)
         cost_new = normal_equations(new, t, z, w, positions, c, H_new, g_new)
         if cost - cost_new < 0.9 * promise:
+            # For the velocity alone the problem is nearly linear: one undamped step will do.
             _boxed_step(H_new, g_new, none, new, lower, upper, VELOCITY, held, L, d)
             move(new, d, lower, upper, new)
             cost_new = normal_equations(new, t, z, w, positions, c, H_new, g_new)
 
+        # Rounding errors e of the predictions change the cost by |r + e|^2 - |r|^2, at most
+        # |e|^2 + 2 |r| |e|: a smaller gain is none.
         rounding = NOISE * size
         enough = TOLERANCE * cost + rounding * (rounding + 2 * np.sqrt(cost))
         gain = cost - cost_new

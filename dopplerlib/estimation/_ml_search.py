@@ -40,6 +40,8 @@ def _summarize(times, z, w, window, mean_t, mean_z, mean_w, slope, spread):
         seen += total if times.size > 1 else total > 0
         if total > 0 and early == 0:
             window = samples
+    # For each sensor the weighted least-squares line z = mean + slope (t - mean time), whose slope
+    # has the variance 1 / spread: spread = sum w^2 (t - mean time)^2.
     all_weights, all_times = 0.0, 0.0
     for n in range(sensors):
         weight, time, mean = 0.0, 0.0, 0.0
@@ -99,6 +101,7 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
         information[run] = np.nan
         cost[run] = second_cost[run] = np.nan
         converged[run] = False
+        # A missing measurement is one of weight zero.
         size = 0.0
         for k in range(samples):
             for n in range(sensors):
@@ -109,6 +112,8 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
         size = np.sqrt(size)
         seen = _summarize(times, data, w, window if moving else samples, mean_t, mean_z, mean_w,
                           slope, spread)  # fmt: skip
+        # Without motion the samples of a sensor are replaced by their mean; what they scatter about
+        # it costs the same at every state, and is added to the costs in the end.
         scatter = 0.0
         if moving:
             t_fit, z_fit, w_fit = times, data, w
@@ -120,6 +125,7 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
         if seen < needed:
             continue
 
+        # Step 1. Runs mostly share their weights, and then the factors of the grid.
         for n in range(sensors):
             if mean_w[0, n] != prepared[n]:
                 copy(mean_w[0], prepared)
@@ -131,11 +137,13 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
             p = chosen[m]
             for a in range(3):
                 states[m, 3 + order[a, p]] = v[a, p]
+            # The grid is for the mean time: back to time zero, and into the box again.
             for i in range(3):
                 e[i] = grid[p, i] - mean_t[0] * states[m, 3 + i]
             e[3:] = 0.0
             states[m, :3] = 0.0
             move(states[m], e, lower, upper, states[m])
+        # Step 2, from each minimum as it is, and from what growing windows make of it.
         if window < t_fit.size:
             for m in range(count):
                 copy(states[m], states[count + m])
@@ -153,6 +161,7 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
         if best < 0:
             continue
         if moving:
+            # Step 3. Every local minimum of the cost along the walk is refined.
             first, last = walk(
                 states[best], times, data, w, mean_t, mean_z, mean_w, positions, c, lower, upper,
                 center, radius, path, path_cost,
@@ -170,6 +179,7 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
                     count += 1
             best = lowest(states[:count], costs[:count], taken, lower, upper)
 
+        # Step 4.
         normal_equations(states[best], t_fit, z_fit, w_fit, positions, c, H, g)
         flat = weakest(H, lower, upper, ones, held, L, e) < singular
         if flat:
@@ -179,6 +189,7 @@ def _search(z, deviations, times, window, positions, c, lower, upper, grid, shap
         cost[run] = scatter + normal_equations(
             x[run], t_fit, z_fit, w_fit, positions, c, information[run], g
         )
+        # The second-best state: the lowest one that is another state, not the same found twice.
         taken[best] = True
         while True:
             m = lowest(states[:count], costs[:count], taken, lower, upper)

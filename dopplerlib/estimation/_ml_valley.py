@@ -38,8 +38,10 @@ TIE = 1e-9  # relative difference between equal costs
 def weakest(H, lower, upper, start, held, L, e):
     """Find the direction e that H determines least; return its eigenvalue, H scaled to ones.
 
-    Inverse iteration from `start`, in units in which the diagonal of H is one. Directions of
-    components that the box fixes do not count.
+    Inverse iteration from `start`, in units in which the diagonal of H is one: with D = diag H,
+    C = D^-1/2 H D^-1/2 and v <- C^-1 v / |v|, which grows along the smallest eigenvalue of C. So an
+    eigenvalue is a share of what single components are known by, whatever their units. Directions
+    of components that the box fixes do not count.
     """
     C, scale, shift, v = np.empty((6, 6)), np.empty(6), np.full(6, 1e-15), np.empty(6)
     largest = 0.0
@@ -52,7 +54,7 @@ def weakest(H, lower, upper, start, held, L, e):
     for i in range(6):
         for j in range(6):
             C[i, j] = H[i, j] / (scale[i] * scale[j])
-    for _ in range(4):
+    for _ in range(4):  # plenty where it matters: where one eigenvalue is by far the smallest
         norm = 0.0
         for i in range(6):
             norm += v[i] * v[i]
@@ -69,8 +71,8 @@ def weakest(H, lower, upper, start, held, L, e):
         for j in range(6):
             value += v[i] * C[i, j] * v[j]
     for i in range(6):
-        e[i] = v[i] / scale[i]
-    return value / norm
+        e[i] = v[i] / scale[i]  # in the units of the state again
+    return value / norm  # Rayleigh quotient v'C v / v'v
 
 
 @compiled
@@ -134,6 +136,8 @@ def walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cent
             normal_equations(y, still_t, still_z, still_w, positions, c, H, g)
             if not weakest(H, lower, upper, before, held, L, e) <= WEAK:
                 break
+            # An eigenvector has no sign: go on in the direction of the step before, at first away
+            # from the array or towards it. Steps grow with the distance, as the valley does.
             reach = _distance(y, center) + radius
             along = 0.0
             length = 0.0
@@ -161,9 +165,10 @@ def walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cent
 def settle(x, t, z, w, positions, c, lower, upper):
     """Move x among equally likely states to the one nearest to the center of the box.
 
-    Newton's method with a vanishing prior: it pulls only where the data say nothing. Short steps
-    are for those few sets of equal states that bend sharply. If the cost would rise x stays: then
-    the box leaves one best state only.
+    Newton's method with a vanishing prior: with M its weights and m the center of the box, it
+    minimizes cost + (x - m)'M (x - m), so it pulls only where the data say nothing. Short steps are
+    for those few sets of equal states that bend sharply. If the cost would rise x stays: then the
+    box leaves one best state only.
     """
     H, g, L = np.empty((6, 6)), np.empty(6), np.empty((6, 6))
     held, d = np.empty(6, np.bool_), np.empty(6)
@@ -181,6 +186,7 @@ def settle(x, t, z, w, positions, c, lower, upper):
         share = 1.0
         for _ in range(int(5 / longest_step)):
             normal_equations(new, t, z, w, positions, c, H, g)
+            # d is the Newton step of both, `towards` the part of it that the pull alone makes.
             for i in range(6):
                 pull[i] = prior[i] * ((lower[i] + upper[i]) / 2 - new[i])
                 g[i] -= pull[i]
@@ -192,13 +198,15 @@ def settle(x, t, z, w, positions, c, lower, upper):
                 length = max(length, np.sqrt(prior[i] / (PULL * most)) * abs(d[i]))
                 along += prior[i] * towards[i] * last[i]
                 square += prior[i] * last[i] ** 2
-            # Where the set bends, a full step is too long or too short: secant.
+            # Where the set bends, a full step is too long or too short. After `share` of the pull's
+            # step its next one was `towards` instead of `last`; the secant through both says which
+            # share would have left nothing: share / (1 - along / square).
             if square > 0:
                 share = min(max(share / max(1 - along / square, 0.1), 0.05), 2.0)
             share = min(share, longest_step / length)
             for i in range(6):
                 last[i] = towards[i]
-                d[i] += (share - 1) * towards[i]
+                d[i] += (share - 1) * towards[i]  # only the pull's part is stretched
             move(new, d, lower, upper, new)
             if length < SETTLED:
                 # What the prior has cost in the directions that the data do determine is regained.

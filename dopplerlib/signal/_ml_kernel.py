@@ -31,7 +31,15 @@ _inline = njit(forceinline=True, error_model="numpy")
 def _power(re, im, first, n, u, wave):
     """Return the power at u, and its first and second derivative with respect to u.
 
-    Times are counted from the middle of the window, where the derivatives are smallest.
+    With omega = 2 pi u / n and X_j = sum_t t^j x_t exp(-i omega t), dX_0/domega = -i X_1 and
+    dX_1/domega = -i X_2, so that of the power |X_0|^2
+
+        the first derivative is 2 Im(conj(X_0) X_1),
+        the second is 2 (|X_1|^2 - Re(conj(X_0) X_2)).
+
+    Times are counted from the middle of the window, where the derivatives are smallest. A block of
+    samples is summed with times a = 0, 1, ... of its own; shifted to its place, t + a, its sums
+    y_j become y_1 + t y_0 and y_2 + 2 t y_1 + t^2 y_0.
     """
     omega = 2 * np.pi * u / n
     one, phase = complex(np.cos(omega), -np.sin(omega)), complex(1.0, 0.0)
@@ -52,7 +60,7 @@ def _power(re, im, first, n, u, wave):
             i1 += i0
             r0 += x * wave[a] - y * wave[BLOCK + a]
             i0 += x * wave[BLOCK + a] + y * wave[a]
-        r2, i2 = 2 * r2 + r1, 2 * i2 + i1
+        r2, i2 = 2 * r2 + r1, 2 * i2 + i1  # a^2 = 2 a (a - 1) / 2 + a
         t = start - (n - 1) / 2
         y0, y1, y2 = phase * complex(r0, i0), phase * complex(r1, i1), phase * complex(r2, i2)
         x0 += y0
@@ -72,6 +80,7 @@ def _refine(re, im, first, n, u, low, high, wave):
     power = 0.0
     for _ in range(STEPS):
         power, slope, bend = _power(re, im, first, n, u, wave)
+        # The bracket shrinks to the side on which the power rises; a step must end inside.
         if slope > 0:
             low = u
         else:
@@ -115,7 +124,12 @@ def _real_ratio(a, b):
 
 @_inline
 def _guess(X, n, k, half):
-    """Return where a tone would lie, from bin k, that explains the bins around it."""
+    """Return where a tone would lie, from bin k, that explains the bins around it.
+
+    A tone at k + d has X[k + m] in proportion to 1 / (d - m), but for small terms. From two bins
+    d = X[k + 1] / (X[k + 1] - X[k]) follows, and from three (Jacobsen)
+    d = (X[k - 1] - X[k + 1]) / (2 X[k] - X[k - 1] - X[k + 1]).
+    """
     each = len(X) // n
     here, after = X[each * k], X[each * (k + 1 if k < n - 1 else 0)]
     if half:

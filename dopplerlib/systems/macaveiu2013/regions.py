@@ -109,7 +109,10 @@ def _scores(noise, s):
     """Score the paths with this noise, scaled to the settings.
 
     The error after a step is e_k = (I - K) (F e_{k-1} - push) + K n_k, where push is what the truth
-    does beside the model. Only what is scored is kept.
+    does beside the model: x_k = F x_{k-1} + push. The filter is linear and its gains depend on no
+    measurement, so the errors need neither states nor measurements, and both axes share F and K of
+    2 by 2. `e` (2, paths * runs * axes) holds position and velocity of all of them side by side,
+    so that a step is one product of matrices. Only what is scored is kept.
     """
     five = paths()
     truth = np.stack([path.truth for path in five.values()], axis=1)
@@ -120,7 +123,7 @@ def _scores(noise, s):
     A, scaled = stay @ F, K * [s.sigma_p, s.sigma_v]
     pushed = np.einsum("kij,kfaj->kifa", stay, push)[..., None, :]
     shape, flat = noise.shape[1:], noise.reshape(*noise.shape[:2], -1)
-    e = scaled[0] @ flat[0]
+    e = scaled[0] @ flat[0]  # the first state is the first measurement: its gain is the identity
     whole = np.sum(e[0].reshape(shape[1:]) ** 2, axis=-1)
     settled, speed = np.zeros_like(whole), np.zeros(shape[1:])
     for k in range(1, s.samples):

@@ -49,6 +49,10 @@ def filter_pair(
     (runs, sensors, K, 2), `P` (runs, sensors, K, 2, 2), `P12` (runs, K, 2, 2), `fused_x`,
     `fused_P`, the number of the window `choice` (runs, sensors, K), and `innovation` and `S`, whose
     first entries are NaN: the first measurement is the start.
+
+    The state is velocity and acceleration, F = [[1, T], [0, 1]], with white jerk of density q:
+    Q = q [[T^3/3, T^2/2], [T^2/2, T]]. A measurement that is `delay` old has H = [1, -delay]. All
+    is written out in components: a study takes millions of steps of two by two.
     """
     runs, sensors, count = v.shape[1:]
     q00, q01, q11 = q * T**3 / 3, q * T**2 / 2, q * T
@@ -96,6 +100,8 @@ def filter_pair(
                 fused_x[r, k], fused_P[r, k] = x[r, 0, k], P[r, 0, k]
             else:
                 if k > 0:
+                    # Cross covariance of the two errors (Bar-Shalom and Campo), which share the
+                    # process noise: P12 = (I - K1 H1) (F P12 F' + Q) (I - K2 H2)'.
                     C, M = P12[r, k - 1], P12[r, k]
                     e00 = C[0, 0] + T * (C[0, 1] + C[1, 0]) + T * T * C[1, 1] + q00
                     e01, e10 = C[0, 1] + T * C[1, 1] + q01, C[1, 0] + T * C[1, 1] + q01
@@ -105,7 +111,8 @@ def filter_pair(
                         f1 = A[0, i, 0] * e01 + A[0, i, 1] * e11
                         for j in range(2):
                             M[i, j] = f0 * A[1, j, 0] + f1 * A[1, j, 1]
-                # Eqs 15 to 17, with the inverse of the sum written out.
+                # Eqs 15 to 17, with the inverse of the sum written out: W = P1 (P1 + P2)^-1,
+                # x = x1 + W (x2 - x1), P = P1 - W P1.
                 B, D = P[r, 0, k], P[r, 1, k]
                 g00, g01, g11 = B[0, 0] + D[0, 0], B[0, 1] + D[0, 1], B[1, 1] + D[1, 1]
                 det = g00 * g11 - g01 * g01

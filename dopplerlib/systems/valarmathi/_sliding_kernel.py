@@ -33,10 +33,15 @@ def slide(re, im, loud, wave_re, wave_im, windows, first, place, power):
     start of the window, so that it is the difference of two sums from there. All in single
     precision: frequencies err by about a hundredth of a bin. Where `loud` (R, samples) is True, the
     sums begin anew, as they would keep the rounding; windows with such a sample get NaN.
+
+    With S_m(k) the sum of x_j exp(-2 pi i j k / N) over j = 0 ... m, the transform of the window of
+    W samples that ends with m is S_m - S_(m - W): of the order of N operations a sample and N a
+    window, where a transform of its own takes N log N. Only the sums of as many samples as the
+    longest window has are kept, in a ring: sample m overwrites the row m % ring.
     """
     records, samples = re.shape
     n = wave_re.shape[0]
-    ring = np.max(windows) + 1  # rows of sums that are still needed
+    ring = np.max(windows) + 1
     sum_re = np.zeros((ring, n), np.float32)
     sum_im = np.zeros((ring, n), np.float32)
     height = np.zeros(n, np.float32)
@@ -46,7 +51,7 @@ def slide(re, im, loud, wave_re, wave_im, windows, first, place, power):
     for r in range(records):
         sum_re[ring - 1] = 0
         sum_im[ring - 1] = 0
-        last = -1  # before it, sums are not those that go on
+        last = -1  # the sums were begun anew here: none from before may be subtracted
         for m in range(samples):
             new, old = m % ring, (m - 1) % ring
             row = m % n
@@ -74,7 +79,9 @@ def slide(re, im, loud, wave_re, wave_im, windows, first, place, power):
                 while bits[peak] < top:
                     peak = peak + 1 if peak < n - 1 else 0
                 peaks[w] = peak
-                # The parabola through the magnitudes of three neighbors, in double precision.
+                # The parabola through the magnitudes l, m, r of three neighbors, in double
+                # precision: its vertex lies at d = (l - r) / (2 (l - 2 m + r)), and its height
+                # there is m - (l - r) d / 4.
                 left = np.float64(height[peak - 1 if peak > 0 else n - 1]) ** 0.5
                 middle = np.float64(height[peak]) ** 0.5
                 right = np.float64(height[peak + 1 if peak < n - 1 else 0]) ** 0.5
