@@ -28,7 +28,7 @@ from typing import (
 import numpy as np
 
 from . import _checks
-from ._typing import ArrayLike
+from ._typing import ArrayLike, BoolArray, FloatArray
 
 _T = TypeVar("_T", bound=Callable[..., Any])
 
@@ -101,7 +101,9 @@ Probability = Annotated[float, _checks.probability]
 Reals = Annotated[ArrayLike, _checks.moderate]
 State = Annotated[ArrayLike, exactly(6)]
 States = Annotated[ArrayLike, shaped(6)]
-Booleans = Annotated[ArrayLike, _checks.booleans]
+# An array_like for the caller, an array for a type checker: booleans, and any numbers, NaN too.
+Booleans = Annotated[BoolArray, _checks.booleans]
+Array = Annotated[FloatArray, _checks.numbers]
 
 _COLLECTING = inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD
 _ARRAY_LIKE = frozenset(get_args(ArrayLike))  # a union, of which a larger union keeps the parts

@@ -19,7 +19,7 @@ class Table:
     rows : dict
         Cells of each row by its label, which is shown as its text; one cell alone where there is
         one column. A cell is a number, a boolean (yes or no), an interval with its `value`, `low`
-        and `high`, or text, shown as it is. A number that is not finite is shown as a dash.
+        and `high`, or text, shown as it is. NaN is shown as a dash.
     columns : sequence of str
         Names of the columns, each with its unit: "error of x (cm)". A single column may do
         without.
@@ -168,14 +168,16 @@ def _row(cells, scope=None):
 def _text(value, digits):
     if isinstance(value, str):
         return value
-    written = digits if isinstance(digits, str) else f".{digits}f"
+    written = digits if isinstance(digits, str) else f"z.{digits}f"  # z: no -0.0
     plain = written.removeprefix("±")
     if isinstance(value, Estimate):
-        one, low, high, half = (
-            _text(number, plain)
-            for number in (value.value, value.low, value.high, value.half_width)
-        )
+        ends = value.value, value.low, value.high, value.half_width
+        one, low, high, half = (_number(number, plain) for number in ends)
         return f"{one} ± {half}" if plain != written else f"{one} ({low} to {high})"
     if isinstance(value, int) and not isinstance(digits, str):
         return str(value)
-    return format(value, plain) if np.isfinite(value) else "–"
+    return _number(value, plain)
+
+
+def _number(value, written):
+    return "–" if np.isnan(value) else format(value, written).replace("inf", "∞")

@@ -1,10 +1,8 @@
 # Made by python -m tools.stubs; do not edit.
+from . import asheim as asheim
 from . import asheim_beyond as asheim_beyond
-from . import asheim_gate as asheim_gate
-from . import asheim_position as asheim_position
-from . import asheim_radar as asheim_radar
-from . import asheim_scene as asheim_scene
-from . import asheim_stand_in as asheim_stand_in
+from . import asheim_real as asheim_real
+from . import asheim_two as asheim_two
 from . import automotive as automotive
 from . import automotive_beyond as automotive_beyond
 from . import automotive_filter as automotive_filter

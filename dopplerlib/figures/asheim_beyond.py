@@ -1,36 +1,48 @@
-"""Figures of what two radars could do at best, and of trackers beyond those of the thesis."""
+"""Figures of the chapter on better trackers: bounds, consistency, and sweeps of settings."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
+from .._hints import Array, checked
+from ..evaluation.intervals import Estimate
 from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, plain_log_ticks, styled
 
 
-def bound_map(x, y, deviation, sensors, points, covariances, scale, baselines, across):
-    """Draw the bound on a position over the plane, its ellipses, and what the baseline does.
+@checked
+def bound_map(
+    x: Array,
+    y: Array,
+    deviation: Array,
+    sensors: Array,
+    points: Array,
+    covariances: Array,
+    scale: float,
+    baselines: Array,
+    across: dict[str, Array],
+) -> Figure:
+    """Draw the bound on a position over the plane, as ellipses, and over the baseline.
 
     Parameters
     ----------
-    x, y : ndarray, shape (M,) and (L,)
+    x, y : array_like, shape (M,) and (L,)
         Coordinates of the grid in m.
-    deviation : ndarray, shape (L, M)
+    deviation : array_like, shape (L, M)
         Root of the trace of the bound in m.
-    sensors : ndarray, shape (2, 2)
+    sensors : array_like, shape (2, 2)
         Positions of the radars in m.
-    points : ndarray, shape (J, 2)
-        Where ellipses are drawn.
-    covariances : ndarray, shape (J, 2, 2)
+    points : array_like, shape (J, 2)
+        Centers of the ellipses in m.
+    covariances : array_like, shape (J, 2, 2)
         Bounds there.
     scale : float
         Half axes of an ellipse in standard deviations.
-    baselines : ndarray, shape (B,)
+    baselines : array_like, shape (B,)
         Baselines in m.
-    across : dict of str to ndarray, shape (B,)
+    across : dict of str to array_like, shape (B,)
         Bounds on a standard deviation by label.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 7.2) as figure:
         plane, below = figure.subplots(2, 1, height_ratios=(5, 3))
@@ -46,30 +58,33 @@ def bound_map(x, y, deviation, sensors, points, covariances, scale, baselines, a
             )
             plane.plot(*p, ".", color=TRUTH, ms=4)
         plane.plot(*sensors.T, "o", color=SENSOR)
-        plane.set(xlabel="x in m", ylabel="y in m", ylim=(-0.4, 5.6), aspect="equal")
+        plane.set(xlabel="x (m)", ylabel="y (m)", ylim=(-0.4, 5.6), aspect="equal")
         for (label, values), (color, ls) in zip(across.items(), VARIANTS, strict=False):
             below.plot(baselines, values, color=color, ls=ls, label=label)
-        below.set(xlabel="baseline in m", ylabel="least deviation in m", yscale="log")
+        below.set(
+            xlabel="baseline (m)", ylabel="bound on the standard\ndeviation (m)", yscale="log"
+        )
         plain_log_ticks(below.yaxis)
         below.legend(loc="upper right")
         return figure
 
 
-def consistency(time, panels, interval):
-    """Draw averages of NIS or NEES over time beside where they should lie.
+@checked
+def consistency(
+    time: Array,
+    panels: dict[str, dict[str, Array]],
+    interval: Sequence[tuple[float, float]],
+) -> Figure:
+    """Draw averages of NIS or NEES over time beside their interval for a consistent filter.
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time in s.
-    panels : dict of str to dict of str to ndarray, shape (K,)
+    panels : dict of str to dict of str to array_like, shape (K,)
         For each title, averages divided by their degrees of freedom by label.
     interval : sequence of tuple (low, high)
-        Where the average of a consistent filter lies, for each panel.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+        Interval of the average for a consistent filter, for each panel.
     """
     with styled(7.0, 3.1) as figure:
         axes = figure.subplots(1, len(panels), squeeze=False)[0]
@@ -77,13 +92,14 @@ def consistency(time, panels, interval):
             ax.axhspan(*bounds, color=BOUND, alpha=0.3, lw=0, label="consistent, 95 %")
             for (label, values), (color, ls) in zip(series.items(), VARIANTS, strict=False):
                 ax.plot(time, values, color=color, ls=ls, lw=1.2, label=label)
-            ax.set(title=title, xlabel="time in s", yscale="log")
+            ax.set(title=title, xlabel="time (s)", yscale="log")
             ax.legend(fontsize=8.5)
         axes[0].set_ylabel("average / degrees of freedom")
         return figure
 
 
-def reach(results):
+@checked
+def reach(results: dict[str, dict[str, Estimate]]) -> Figure:
     """Draw usable ranges with their intervals, by experiment and tracker.
 
     Parameters
@@ -91,10 +107,6 @@ def reach(results):
     results : dict of str to dict of str to Estimate
         For each experiment, the usable range of each tracker in m; infinite values are drawn at
         the edge.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
@@ -111,13 +123,14 @@ def reach(results):
         for label, (color, mark) in styles.items():
             ax.plot([], [], mark, color=color, ms=6, label=label)
         ax.set_yticks(range(len(results)), results)
-        ax.set(xlabel="useful up to this distance from the origin in m", xlim=(4.4, 7.4))
+        ax.set(xlabel="usable range from the origin (m)", xlim=(4.4, 7.4))
         ax.set_ylim(len(results) - 0.5, -0.5)
         figure.legend(loc="outside lower center", ncols=3, fontsize=8.5)
         return figure
 
 
-def sweep(values, errors, xlabel):
+@checked
+def sweep(values: Array, errors: dict[str, Sequence[Estimate]], xlabel: str) -> Figure:
     """Draw the error of several trackers over a setting: a delay, a baseline.
 
     Parameters
@@ -128,10 +141,6 @@ def sweep(values, errors, xlabel):
         Root mean square errors in m by label, one for each value.
     xlabel : str
         Name and unit of the setting.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(6.0, 3.2) as figure:
         ax = figure.subplots()
@@ -139,7 +148,7 @@ def sweep(values, errors, xlabel):
             low, middle, high = zip(*((e.low, e.value, e.high) for e in found), strict=True)
             ax.plot(values, middle, color=color, ls=ls, marker="o", ms=4, label=label)
             ax.fill_between(values, low, high, color=color, alpha=0.2, lw=0)
-        ax.set(xlabel=xlabel, ylabel="RMS position error in m", yscale="log")
+        ax.set(xlabel=xlabel, ylabel="RMS position error (m)", yscale="log")
         plain_log_ticks(ax.yaxis)
         ax.legend(fontsize=9)
         return figure

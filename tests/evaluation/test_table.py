@@ -53,6 +53,11 @@ def test_a_format_says_how_numbers_and_intervals_are_written():
     ]
 
 
+def test_what_rounds_to_zero_has_no_sign_and_an_open_interval_says_so():
+    cells = (-1e-17, Estimate(1.0, -np.inf, np.inf), np.inf)
+    assert Table({"a": cells}, tuple("xyz"), 1).cells[1] == ["a", "0.0", "1.0 (-∞ to ∞)", "∞"]
+
+
 def test_facts_need_no_head_and_may_have_their_own_digits():
     facts = Table({"distance (m)": 1.25, "samples": 10, "consistent": np.True_}, digits={
         "distance (m)": 1

@@ -35,7 +35,7 @@ def part_calls(dl, np):
         "evaluation": lambda: dl.chi2_interval(6),
         "replication": lambda: judged(dl, rng),
         "asheim2015": lambda: s.asheim2015.deviations([1.0, 2.0]),
-        "macaveiu2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
+        "automotive2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
         "mittermaier2016": lambda: s.mittermaier2016.published_figure6().nis,
         "mittermaier2016, scenario": lambda: s.mittermaier2016.scenario().truth,
         "sombatsatien": lambda: s.sombatsatien.reported_record(),
@@ -78,15 +78,13 @@ def figure_calls(dl, np):
     x0, sensors = [1.0, 0, 0, -1, 0, 0], np.array([[-0.5, 0.0], [0.5, 0.0]])
     paper, half = s.mittermaier2016, dl.evaluation.intervals.Estimate(0.5, 0.4, 0.6)
     world, path = paper.scenario(), paper.scenario().truth
-    two, scan = np.ones((2, 2)), {"title": "", "S": np.eye(2), "detections": plane}
+    two = np.ones((2, 2))
     errors = rng.uniform(0.1, 1.0, (2, 20))
     return {
+        "asheim": lambda: f.asheim.one_range(time, time, time, {"a": time}, (1, 3)),
         "asheim_beyond": lambda: f.asheim_beyond.sweep(time[:2], {"a": [half] * 2}, "s"),
-        "asheim_gate": lambda: f.asheim_gate.gates([scan] * 2, (0.9, 0.6), 9.0),
-        "asheim_position": lambda: f.asheim_position.error_over_distance(time, {"a": plane.T}),
-        "asheim_radar": lambda: f.asheim_radar.with_without(time, {"radar": {"a": plane.T}}),
-        "asheim_scene": lambda: f.asheim_scene.system_path(),
-        "asheim_stand_in": lambda: f.asheim_stand_in.positions(plane, plane, plane, sensors),
+        "asheim_two": lambda: f.asheim_two.error_over_distance(time, {"a": plane.T}),
+        "asheim_real": lambda: f.asheim_real.positions(plane, plane, plane, sensors),
         "automotive": lambda: f.automotive.scene({"all": {}}, np.zeros((6, 4))),
         "automotive_beyond": lambda: f.automotive_beyond.hole(time, {"a": time}, 0.1, {"a": time}),
         "automotive_filter": lambda: f.automotive_filter.lags(time[:2], two, two, {}),

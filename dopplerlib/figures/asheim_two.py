@@ -1,29 +1,36 @@
-"""Figures of both radars: the area where circles meet, positions, and their errors."""
+"""Figures of the chapter on two radars: the error area, positions, and their errors."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from .._hints import Array, checked
 from .style import BOUND, MEASURED, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, styled
 
 
-def error_areas(p, sensors, rings, areas, titles):
-    """Draw rings about both radars and the area that they share (Fig 5.5).
+@checked
+def error_areas(
+    p: Array,
+    sensors: Array,
+    rings: Sequence[Array],
+    areas: Sequence[Array],
+    titles: Sequence[str],
+) -> Figure:
+    """Draw rings around both radars and the area of their intersection (Fig 5.5).
 
     Parameters
     ----------
-    p : ndarray, shape (2,)
+    p : array_like, shape (2,)
         True position in m.
-    sensors : ndarray, shape (2, 2)
+    sensors : array_like, shape (2, 2)
         Positions of the radars in m.
-    rings : sequence of ndarray, shape (2,)
+    rings : sequence of array_like, shape (2,)
         For each pair of panels, half-widths of the rings of both radars in m.
-    areas : sequence of ndarray, shape (M, 2)
+    areas : sequence of array_like, shape (M, 2)
         Outline of the area for each.
     titles : sequence of str
         Of the panels: the first rings in whole, then each in detail.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     angle = np.linspace(0, np.pi, 2000)
     unit = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -40,9 +47,9 @@ def error_areas(p, sensors, rings, areas, titles):
                     )
             ax.fill(*corners.T, color=SENSOR, alpha=0.35, lw=0)
             ax.plot(*p, "*", color=TRUTH, ms=9)
-            ax.set(title=title, xlabel="x in m")
+            ax.set(title=title, xlabel="x (m)")
         axes[0].plot(*sensors.T, "o", color=SENSOR)
-        axes[0].set(ylabel="y in m", xlim=(-5, 5), ylim=(0, 5.4), aspect="equal")
+        axes[0].set(ylabel="y (m)", xlim=(-5, 5), ylim=(0, 5.4), aspect="equal")
         reach = 1.25 * np.abs(areas[-1] - p).max(axis=0)
         for ax in axes[1:]:
             ax.set(
@@ -51,25 +58,28 @@ def error_areas(p, sensors, rings, areas, titles):
         return figure
 
 
-def plane(truth, sets, sensors, limits, titles=None):
+@checked
+def plane(
+    truth: Array,
+    sets: Sequence[dict[str, Array]],
+    sensors: Array,
+    limits: tuple[tuple[float, float], tuple[float, float]],
+    titles: Sequence[str] = (),
+) -> Figure:
     """Draw positions in the plane, one panel for each set of labeled positions.
 
     Parameters
     ----------
-    truth : ndarray, shape (K, 2)
+    truth : array_like, shape (K, 2)
         True positions in m.
-    sets : sequence of dict of str to ndarray, shape (K, 2)
+    sets : sequence of dict of str to array_like, shape (K, 2)
         For each panel, positions by label; the last label of a panel is the estimate.
-    sensors : ndarray, shape (2, 2)
+    sensors : array_like, shape (2, 2)
         Positions of the radars in m.
     limits : tuple of two tuple of float
         Limits of x and of y.
-    titles : sequence of str, optional
+    titles : sequence of str
         Of the panels.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.6) as figure:
         axes = figure.subplots(1, len(sets), squeeze=False, sharey=True)[0]
@@ -80,31 +90,35 @@ def plane(truth, sets, sensors, limits, titles=None):
             ax.plot(*positions[labels[-1]].T, color=OURS, label=labels[-1])
             ax.plot(*truth.T, color=TRUTH, ls="--", label="true")
             ax.plot(*sensors.T, "o", color=SENSOR)
-            ax.set(xlabel="x in m", xlim=limits[0], ylim=limits[1])
+            ax.set(xlabel="x (m)", xlim=limits[0], ylim=limits[1])
             if titles:
                 ax.set_title(titles[i])
             ax.legend(loc="upper left")
-        axes[0].set_ylabel("y in m")
+        axes[0].set_ylabel("y (m)")
         return figure
 
 
-def triangulated(time, truth, raw, estimate, sensors, limits):
-    """Draw x and y over time and both in the plane (Fig 5.10).
+@checked
+def triangulated(
+    time: Array,
+    truth: Array,
+    raw: Array,
+    estimate: Array,
+    sensors: Array,
+    limits: tuple[tuple[float, float], tuple[float, float]],
+) -> Figure:
+    """Draw x and y over time, and the positions in the plane (Fig 5.10).
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time in s.
-    truth, raw, estimate : ndarray, shape (K, 2)
+    truth, raw, estimate : array_like, shape (K, 2)
         Positions in m.
-    sensors : ndarray, shape (2, 2)
+    sensors : array_like, shape (2, 2)
         Positions of the radars in m.
     limits : tuple of two tuple of float
         Limits of x and of y.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.0) as figure:
         axes = figure.subplots(1, 3)
@@ -112,33 +126,35 @@ def triangulated(time, truth, raw, estimate, sensors, limits):
             axes[i].plot(time, raw[:, i], color=MEASURED, lw=0.7, label="measured, inside the gate")
             axes[i].plot(time, truth[:, i], color=TRUTH, ls="--", label="true")
             axes[i].plot(time, estimate[:, i], color=OURS, label="filtered")
-            axes[i].set(xlabel="time in s", ylabel=f"{name} in m", ylim=limits[i])
+            axes[i].set(xlabel="time (s)", ylabel=f"{name} (m)", ylim=limits[i])
         axes[2].plot(*raw.T, ".", color=MEASURED, ms=3)
         axes[2].plot(*truth.T, color=TRUTH, ls="--")
         axes[2].plot(*estimate.T, color=OURS)
         axes[2].plot(*sensors.T, "o", color=SENSOR)
-        axes[2].set(xlabel="x in m", ylabel="y in m", xlim=limits[0], ylim=limits[1])
+        axes[2].set(xlabel="x (m)", ylabel="y (m)", xlim=limits[0], ylim=limits[1])
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
         return figure
 
 
-def error_over_distance(distance, errors, limit=1.0, published=None):
+@checked
+def error_over_distance(
+    distance: Array,
+    errors: dict[str, Array],
+    limit: float = 1.0,
+    published: float | None = None,
+) -> Figure:
     """Draw the root mean square error of many runs over the distance from the origin.
 
     Parameters
     ----------
-    distance : ndarray, shape (K,)
+    distance : array_like, shape (K,)
         True distance in m.
-    errors : dict of str to ndarray, shape (runs, K)
+    errors : dict of str to array_like, shape (runs, K)
         Position errors in m by label; NaN where there is no estimate.
     limit : float
-        Error above which a position is called useless.
+        Error in m above which a position is called useless.
     published : float, optional
-        Distance up to which the thesis calls its estimates useful.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+        Usable range in m that the thesis reports.
     """
     with styled(7.0, 3.6) as figure:
         ax = figure.subplots()
@@ -149,8 +165,8 @@ def error_over_distance(distance, errors, limit=1.0, published=None):
             ax.plot(distance, rms, color=color, ls=ls, label=label)
         ax.axhline(limit, color=BOUND, lw=1.0)
         if published is not None:
-            ax.axvline(published, color=PUBLISHED, ls=":", label="useful to here, says the thesis")
-        ax.set(xlabel="distance from the origin in m", ylabel="RMS position error in m")
+            ax.axvline(published, color=PUBLISHED, ls=":", label="usable range in the thesis")
+        ax.set(xlabel="distance from the origin (m)", ylabel="RMS position error (m)")
         ax.set(yscale="log", ylim=(1e-3, 100))
         ax.legend(loc="upper left", fontsize=9)
         return figure

@@ -1,18 +1,28 @@
-"""Figures of the SIMULATED stand-in for the thesis's recordings; each says so in its title."""
+"""Figures of the chapter on SIMULATED recordings of real radars; each title says so."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from .._hints import Array, checked
 from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, TRUTH, styled
 
-LABEL = "SIMULATED"
+_LABEL = "SIMULATED"
 
 
-def records(time, panels, window, gap):
+@checked
+def records(
+    time: Array,
+    panels: dict[str, dict[str, Array]],
+    window: tuple[float, float],
+    gap: tuple[float, float],
+) -> Figure:
     """Draw detections, the chosen ones and the filtered range over time (Figs 6.1 to 6.4).
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time of each scan in s.
     panels : dict of str to dict
         For each title: `detections` (K, M), and optionally `chosen` (K,), `filtered` (K,) and
@@ -21,10 +31,6 @@ def records(time, panels, window, gap):
         Ranges between which the radar sees something, in m.
     gap : tuple of float
         Between these times nothing is seen, in s.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.4) as figure:
         axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
@@ -41,26 +47,23 @@ def records(time, panels, window, gap):
                 ax.plot(time, data["chosen"], "o", color=SENSOR, ms=4, label="chosen")
             if "filtered" in data:
                 ax.plot(time, data["filtered"], "+", color=OURS, ms=6, mew=1.4, label="filtered")
-            ax.set(title=f"{LABEL}: {title}", xlabel="time in s", ylim=(0.5, 7.5))
-        axes[0].set_ylabel("range in m")
+            ax.set(title=f"{_LABEL}: {title}", xlabel="time (s)", ylim=(0.5, 7.5))
+        axes[0].set_ylabel("range (m)")
         handles, labels = axes[-1].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=4)
         return figure
 
 
-def positions(truth, raw, estimate, sensors):
+@checked
+def positions(truth: Array, raw: Array, estimate: Array, sensors: Array) -> Figure:
     """Draw triangulated positions in the plane (Fig 6.4(c)).
 
     Parameters
     ----------
-    truth, raw, estimate : ndarray, shape (K, 2)
+    truth, raw, estimate : array_like, shape (K, 2)
         Positions in m.
-    sensors : ndarray, shape (2, 2)
+    sensors : array_like, shape (2, 2)
         Positions of the radars in m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(5.0, 4.6) as figure:
         ax = figure.subplots()
@@ -68,31 +71,34 @@ def positions(truth, raw, estimate, sensors):
         ax.plot(*estimate.T, "+", color=OURS, ms=7, mew=1.5, label="filtered, triangulated")
         ax.plot(*truth.T, color=TRUTH, ls="--", label="true")
         ax.plot(*sensors.T, "o", color=SENSOR, ms=7)
-        ax.set(title=f"{LABEL}: position from both radars", xlabel="x in m", ylabel="y in m")
+        ax.set(title=f"{_LABEL}: position from both radars", xlabel="x (m)", ylabel="y (m)")
         ax.set(xlim=(-3, 3), ylim=(-0.3, 6.2))
         ax.legend(loc="lower left", fontsize=8.5)
         return figure
 
 
-def coasting(time, truth, runs, gap, titles):
+@checked
+def coasting(
+    time: Array,
+    truth: Sequence[Array],
+    runs: Sequence[Array],
+    gap: tuple[float, float],
+    titles: Sequence[str],
+) -> Figure:
     """Draw the filtered ranges of many walks through the gap.
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time of each scan in s.
-    truth : sequence of ndarray, shape (K,)
+    truth : sequence of array_like, shape (K,)
         True range for each panel in m.
-    runs : sequence of ndarray, shape (runs, K)
+    runs : sequence of array_like, shape (runs, K)
         Filtered ranges in m.
     gap : tuple of float
         Between these times nothing is seen, in s.
     titles : sequence of str
         One for each panel.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.2) as figure:
         axes = figure.subplots(1, len(runs), sharey=True)
@@ -101,33 +107,37 @@ def coasting(time, truth, runs, gap, titles):
             ax.plot(time, d.T, color=OURS, lw=0.6, alpha=0.5)
             ax.plot([], [], color=OURS, lw=0.8, label=f"filtered, {len(d)} walks")
             ax.plot(time, true, color=ORANGE, ls="--", lw=2, label="true")
-            ax.set(title=f"{LABEL}: {title}", xlabel="time in s", ylim=(0, 12))
+            ax.set(title=f"{_LABEL}: {title}", xlabel="time (s)", ylim=(0, 12))
             ax.legend(loc="upper left")
-        axes[0].set_ylabel("range in m")
+        axes[0].set_ylabel("range (m)")
         return figure
 
 
-def managed(time, detections, tracks, truth, gap, alternative):
-    """Draw confirmed tracks of one record, and what association by probability makes of it.
+@checked
+def managed(
+    time: Array,
+    detections: Array,
+    tracks: Sequence[dict],
+    truth: Array,
+    gap: tuple[float, float],
+    alternative: Array,
+) -> Figure:
+    """Draw confirmed tracks of one record, and a single track with probabilistic association.
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time of each scan in s.
-    detections : ndarray, shape (K, M)
+    detections : array_like, shape (K, M)
         Ranges in m.
     tracks : sequence of dict
         As `managed_tracks` returns them.
-    truth : ndarray, shape (K,)
+    truth : array_like, shape (K,)
         True range in m.
     gap : tuple of float
         Between these times nothing is seen, in s.
-    alternative : ndarray, shape (K,)
+    alternative : array_like, shape (K,)
         Ranges of the filter with association by probability, in m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.3) as figure:
         left, right = figure.subplots(1, 2, sharey=True)
@@ -136,15 +146,15 @@ def managed(time, detections, tracks, truth, gap, alternative):
             ax.plot(np.repeat(time, detections.shape[1]), detections.ravel(), "o", mfc="none",
                     mec=MEASURED, ms=4, label="detections")  # fmt: skip
             ax.plot(time, truth, color=TRUTH, ls="--", label="true")
-            ax.set(xlabel="time in s", ylim=(0.5, 6.5))
+            ax.set(xlabel="time (s)", ylim=(0.5, 6.5))
         for i, (track, color) in enumerate(
             zip(tracks, (OURS, ORANGE, SENSOR, PINK) * len(tracks), strict=False)
         ):
             left.plot(time[track["scan"]], track["x"][:, 0], color=color, marker=".", ms=4,
                       label="confirmed tracks" if i == 0 else None)  # fmt: skip
         right.plot(time, alternative, color=OURS, marker=".", ms=4, label="PDA")
-        left.set(title=f"{LABEL}: managed tracks", ylabel="range in m")
-        right.set_title(f"{LABEL}: one track, PDA")
+        left.set(title=f"{_LABEL}: managed tracks", ylabel="range (m)")
+        right.set_title(f"{_LABEL}: one track, PDA")
         entries = {}
         for ax in (left, right):
             for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):

@@ -1,0 +1,46 @@
+"""The figures of the stand-in show the data they are given, and say that it is simulated."""
+
+import numpy as np
+import pytest
+
+from dopplerlib.figures import asheim_real as draw
+from tests.drawn import check_figures, lines
+
+TIME = np.arange(50.0)
+SENSORS = np.array([[-0.5, 0.0], [0.5, 0.0]])
+GAP = (25.0, 42.0)
+
+
+@pytest.fixture(scope="module")
+def figures():
+    d, p = np.ones((50, 3)), np.ones((50, 2))
+    track = {"scan": np.arange(3), "x": np.ones((3, 2))}
+    one = {"detections": d, "chosen": TIME, "filtered": TIME, "truth": TIME}
+    return {
+        "records": draw.records(TIME, {"a": one, "b": {"detections": d}}, (1.5, 4.5), GAP),
+        "positions": draw.positions(p, p, p, SENSORS),
+        "coasting": draw.coasting(TIME, [TIME] * 2, [np.ones((4, 50))] * 2, GAP, ("a", "b")),
+        "managed": draw.managed(TIME, d, [track, track], TIME, GAP, TIME),
+    }
+
+
+def test_every_panel_says_that_it_is_simulated(figures):
+    for figure in figures.values():
+        assert all(ax.get_title(loc="left").startswith("SIMULATED") for ax in figure.axes)
+
+
+def test_a_record_shows_what_it_has(figures):
+    first, second = (lines(ax) for ax in figures["records"].axes)
+    assert set(first) == {"detections", "chosen", "filtered", "true"}
+    assert set(second) == {"detections"}
+    assert len(second["detections"].get_xdata()) == 150
+
+
+def test_managed_tracks_stand_at_their_scans_and_are_named_once(figures):
+    left, _ = figures["managed"].axes
+    assert lines(left)["confirmed tracks"].get_xydata().tolist() == [[0, 1], [1, 1], [2, 1]]
+    assert len(left.lines) == 4
+
+
+def test_every_figure_fits_the_page(figures):
+    check_figures(draw, figures)
