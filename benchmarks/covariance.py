@@ -47,8 +47,8 @@ def main(steps):
 
 
 def path(scenario, first, samples):
-    """Return true states: harmonic motion along (1, 1, 1), sigma_p its largest acceleration."""
-    w = np.sqrt(scenario.sigma_p / AMPLITUDE)
+    """Return true states: harmonic motion along (1, 1, 1), sigma_a its largest acceleration."""
+    w = np.sqrt(scenario.sigma_a / AMPLITUDE)
     t = scenario.T * np.arange(first, first + samples)
     position = CENTER + AMPLITUDE * np.sin(w * t)[:, None] * np.ones(3)
     velocity = AMPLITUDE * w * np.cos(w * t)[:, None] * np.ones(3)
@@ -113,7 +113,7 @@ def of_the_library(scenario):
     """Return dopplerlib's filter as a function of measurements, state and covariance."""
 
     def run(z, x, P):
-        track = ekf(z, scenario.array, x, P, scenario.T, scenario.sigma_p, scenario.sigma_f,
+        track = ekf(z, scenario.array, x, P, scenario.T, scenario.sigma_a, scenario.sigma_f,
                     keep=("P",))  # fmt: skip
         return track.x, track.P
 
@@ -123,7 +123,7 @@ def of_the_library(scenario):
 def plain(scenario, form):
     """Return an EKF in NumPy whose covariance is updated by `form`."""
     array = scenario.array
-    F, Q = constant_velocity(scenario.T, scenario.sigma_p)
+    F, Q = constant_velocity(scenario.T, scenario.sigma_a)
     R = scenario.sigma_f**2 * np.eye(len(array))
     return lambda z, x, P: peers.textbook(array, x, P, F, Q, R, form)(z)
 

@@ -34,8 +34,8 @@ from dopplerlib import Scenario, ekf, simulate
 import numpy as np
 s = Scenario.from_toml(sys.argv[1])
 z = simulate(s, 16, rng=np.random.default_rng(1))[1]
-ekf(z[0], s.array, s.x0, s.P0, s.T, s.sigma_p, s.sigma_f)
-ekf(z, s.array, s.x0, s.P0, s.T, s.sigma_p, s.sigma_f)
+ekf(z[0], s.array, s.x0, s.P0, s.T, s.sigma_a, s.sigma_f)
+ekf(z, s.array, s.x0, s.P0, s.T, s.sigma_a, s.sigma_f)
 print(time.perf_counter() - start)
 """
 
@@ -72,11 +72,11 @@ def filters(scenario, x0):
 
     def ours(z, **options):
         return ekf(
-            z, scenario.array, x0, scenario.P0, scenario.T, scenario.sigma_p, scenario.sigma_f,
+            z, scenario.array, x0, scenario.P0, scenario.T, scenario.sigma_a, scenario.sigma_f,
             **options,
         )  # fmt: skip
 
-    F, Q = constant_velocity(scenario.T, scenario.sigma_p)
+    F, Q = constant_velocity(scenario.T, scenario.sigma_a)
     R = scenario.sigma_f**2 * np.eye(len(scenario.array))
     arguments = scenario.array, x0, scenario.P0, F, Q, R
     return ours, {

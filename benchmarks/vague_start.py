@@ -12,7 +12,7 @@ import numpy as np
 
 from dopplerlib import RadarArray, doppler_jacobian
 from dopplerlib.kernels import ekf as kernel
-from dopplerlib.model.motion import acceleration_gain, constant_velocity
+from dopplerlib.model.motion import constant_velocity, dwna_gain
 
 SCENES, SAMPLES = 20, 40
 T, SIGMA_P, SIGMA_F = 0.001, 0.4, 0.4
@@ -41,14 +41,14 @@ def main():
 
 
 def scene(rng, ratio):
-    """Return P0, the Jacobians (K, N, 6), R, F and G sigma_p of a random scene."""
+    """Return P0, the Jacobians (K, N, 6), R, F and G sigma_a of a random scene."""
     sensors = rng.integers(3, 9)
     array = RadarArray(0.3 * rng.standard_normal((sensors, 3)) * [0.1, 1, 1])
     start = rng.uniform([0.5, -0.3, -0.3, -1, -1, -1], [1.5, 0.3, 0.3, 0, 1, 1])
     path = np.tile(start, (SAMPLES, 1))
     path[:, :3] += T * np.arange(SAMPLES)[:, None] * start[3:]
-    noise = rng.choice(["common", "independent"])
-    G = SIGMA_P * acceleration_gain(np.array(T), noise)
+    noise = rng.choice(["shared", "per_axis"])
+    G = SIGMA_P * dwna_gain(np.array(T), noise)
     P0 = ratio * SIGMA_F**2 * np.eye(6)
     R = np.full(sensors, SIGMA_F**2)
     return P0, doppler_jacobian(path, array), R, constant_velocity(T, SIGMA_P)[0], G

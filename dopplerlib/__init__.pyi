@@ -20,8 +20,8 @@ from .estimation.imm import imm as imm
 from .estimation.linear_kalman import kf as kf
 from .estimation.linear_kalman import kf_predict as kf_predict
 from .estimation.linear_kalman import kf_update as kf_update
-from .estimation.maximum_likelihood import Start as Start
-from .estimation.maximum_likelihood import ml_start as ml_start
+from .estimation.maximum_likelihood import InitialEstimate as InitialEstimate
+from .estimation.maximum_likelihood import ml_initialize as ml_initialize
 from .estimation.nonlinear_kalman import ekf_records as ekf_records
 from .estimation.nonlinear_kalman import ukf as ukf
 from .estimation.smoother import rts_smooth as rts_smooth
@@ -35,7 +35,7 @@ from .evaluation.bounds import crlb as crlb
 from .evaluation.consistency import chi2_interval as chi2_interval
 from .evaluation.consistency import nees as nees
 from .evaluation.consistency import nis as nis
-from .evaluation.directions import errors_by_direction as errors_by_direction
+from .evaluation.directions import principal_axis_errors as principal_axis_errors
 from .evaluation.table import Table as Table
 from .evaluation.whiteness import innovation_mean as innovation_mean
 from .evaluation.whiteness import innovation_whiteness as innovation_whiteness
@@ -66,11 +66,11 @@ from .tracking.management import TrackManager as TrackManager
 __all__ = [
     "Baseband",
     "DopplerRecord",
+    "InitialEstimate",
     "IqTrack",
     "RadarArray",
     "Recording",
     "Scenario",
-    "Start",
     "Table",
     "Track",
     "TrackManager",
@@ -88,7 +88,6 @@ __all__ = [
     "ekf",
     "ekf_records",
     "ekf_update",
-    "errors_by_direction",
     "fisher_information",
     "gate_bounds",
     "gnn_assign",
@@ -100,10 +99,11 @@ __all__ = [
     "kf_predict",
     "kf_update",
     "ml_frequency",
-    "ml_start",
+    "ml_initialize",
     "nees",
     "nees_samples",
     "nis",
+    "principal_axis_errors",
     "read_sigmf",
     "read_wav",
     "ring_family",

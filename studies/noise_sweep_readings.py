@@ -50,7 +50,7 @@ def contents(rows):
     """Return the table of scores."""
     best = [
         max(range(len(rows)), key=lambda i: (rows[i]["likelihood"] == name, rows[i]["score"]))
-        for name in ("moving", "static")
+        for name in ("constant_velocity", "stationary")
     ]
     again = [score(sweep_readings()[i], PARAMETERS["seed_again"]) for i in best]
     parts = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]

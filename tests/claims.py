@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.replication.claims import read_claims
 from dopplerlib.replication.verdicts import Draws, Readings, judge, judge_all
 
@@ -54,7 +54,7 @@ def check_flips(document, evidence):
                 assert _verdict(claim, one, right) in ("reproduced", "typical"), claim.id
             for wrong in _wrong(claim, one):
                 assert _verdict(claim, one, wrong) in ("contradicted", "atypical"), claim.id
-            if isinstance(one, Estimate) and one.low < one.value < one.high:
+            if isinstance(one, ConfidenceInterval) and one.low < one.value < one.high:
                 assert _verdict(claim, one, one.value) == "underdetermined", claim.id
 
 
@@ -105,6 +105,6 @@ def _step(claim, value):
 
 
 def _ends(evidence):
-    if isinstance(evidence, Estimate):
+    if isinstance(evidence, ConfidenceInterval):
         return evidence.low, evidence.high
     return float(evidence), float(evidence)

@@ -22,11 +22,11 @@ from dopplerlib.estimation import (
     steady_state,
     variable_projection,
 )
-from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 from dopplerlib.tracking import association, bilateration, fusion, gates, multi_target, pda
 
 K, n, m = 4, 2, 1
-F, Q = ncv_transition(0.5, dim=1), wna_process_noise(0.5, 0.3, dim=1)
+F, Q = ncv_transition(0.5, dim=1), cwna_process_noise(0.5, 0.3, dim=1)
 H, R = np.array([[1.0, 0.2]]), np.array([[0.4]])
 x, P = np.array([1.0, -0.5]), np.array([[2.0, 0.3], [0.3, 1.0]])
 z = np.array([[0.5], [0.1], [-0.4], [0.2]])
@@ -51,12 +51,12 @@ CALLS = {
     | nonlinear,
     nonlinear_kalman.ekf_records: {
         "z": z, "f": lambda x: x @ F.T, "F": lambda x: F, "Q": Q, "R": R, "x0": x, "P0": P,
-        "wrap": (0,), "gate": "upper", "confidence": 0.9,
+        "wrap": (0,), "gate": "upper", "gate_probability": 0.9,
     } | nonlinear,
     nonlinear_kalman.ukf: {
         "z": z, "f": lambda x: x @ F.T, "Q": Q, "h": nonlinear["h"], "R": R, "x0": x, "P0": P,
         "points": "unscented", "alpha": 0.5, "beta": 2.0, "kappa": 0.5,
-        "wrap": (0,), "gate": "upper", "confidence": 0.9,
+        "wrap": (0,), "gate": "upper", "gate_probability": 0.9,
     },
     imm.imm: {
         "z": z, "F": [F, F], "Q": [Q, 4 * Q], "H": H, "R": R, "x0": x, "P0": P,
@@ -69,13 +69,13 @@ CALLS = {
     radial_velocity.radial_velocity_update: {"x": x, "P": P, "z": 0.3, "sigma": 0.1},
     extended_kalman.ekf: {
         "z": shifts, "array": array, "x0": state, "P0": 0.01 * np.eye(6), "T": 0.001,
-        "sigma_p": 0.4, "sigma_f": 0.4, "keep": ("P", "S", "innovation"), "workers": 1,
+        "sigma_a": 0.4, "sigma_f": 0.4, "keep": ("P", "S", "innovation"), "workers": 1,
     },
-    extended_kalman.gate_bounds: {"gate": "upper", "sensors": 6, "confidence": 0.9},
-    maximum_likelihood.ml_start: {
+    extended_kalman.gate_bounds: {"gate": "upper", "sensors": 6, "gate_probability": 0.9},
+    maximum_likelihood.ml_initialize: {
         "z": shifts, "array": array, "sigma_f": 0.1, "T": 0.001, "box": box, "workers": 1,
     },
-    variable_projection.best_velocity: {
+    variable_projection.velocity_given_position: {
         "z": shifts[0], "array": array, "sigma_f": 0.1, "p": state[:3], "in_plane": True,
     },
     association.nearest_neighbor: {"distance": [1.0, 2.0], "accept": [False, True]},
@@ -88,11 +88,11 @@ CALLS = {
     },
     fusion.covariance_intersection: two | {"w": 0.5},
     fusion.fuse_measurements: {"z1": x, "R1": P, "z2": x + 0.1, "R2": 2 * P},
-    gates.chi2_gate: {"nis": [1.0, 9.0], "m": 2, "probability": 0.95},
+    gates.chi2_gate: {"nis": [1.0, 9.0], "m": 2, "gate_probability": 0.95},
     gates.fixed_box_gate: {"innovation": x, "half_widths": [0.5, 1.0]},
     multi_target.track_scans: {
         "scans": [z[:2], z[1:2], z[2:]], "F": F, "Q": Q, "R": R, "start": start,
-        "manager": TrackManager(2, 3, 3), "probability": 0.99, "wrap": (0,),
+        "manager": TrackManager(2, 3, 3), "gate_probability": 0.99, "wrap": (0,),
     } | nonlinear,
     pda.pda_update: {
         "x": x, "P": P, "z": z, "H": H, "R": R, "detection": 0.9, "density": 0.1, "gate": 0.99,

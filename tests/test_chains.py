@@ -18,17 +18,17 @@ from dopplerlib import (
     kf,
     kf_predict,
     kf_update,
-    ml_start,
+    ml_initialize,
     rts_smooth,
     steady_state_gain,
 )
 from dopplerlib.estimation.extended_update import ekf_innovation
 from dopplerlib.estimation.radial_velocity import radial_velocity_terms, radial_velocity_update
-from dopplerlib.model.kinematics import (
+from dopplerlib.model.motion import (
+    cwna_process_noise,
+    cwnj_process_noise,
     nca_transition,
     ncv_transition,
-    wna_process_noise,
-    wnj_process_noise,
 )
 from dopplerlib.tracking.fusion import covariance_intersection, fuse_state_vectors
 from dopplerlib.tracking.management import TrackManager
@@ -41,8 +41,8 @@ MODELS = {
     f"{name}, {T} s": (transition(T, dim=1), noise(T, 1e-6, dim=1))
     for T in (0.001, 1.0, 30.0)
     for name, transition, noise in (
-        ("constant velocity", ncv_transition, wna_process_noise),
-        ("constant acceleration", nca_transition, wnj_process_noise),
+        ("constant velocity", ncv_transition, cwna_process_noise),
+        ("constant acceleration", nca_transition, cwnj_process_noise),
     )
 }
 
@@ -107,7 +107,7 @@ def test_covariances_that_come_out_may_go_in_at_any_ratio(model):
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_a_chain_of_all_functions_stays_a_covariance(ratio):
     """Each takes what the one before returned, over and over, in two dimensions."""
-    F, Q = ncv_transition(1.0), wna_process_noise(1.0, 1e-3)
+    F, Q = ncv_transition(1.0), cwna_process_noise(1.0, 1e-3)
     swap = np.array([0, 2, 1, 3])  # [x, v_x, y, v_y] and [x, y, v_x, v_y]
     H, R = np.eye(4)[[0, 2]], np.array([[1.0, 0.5], [0.5, 1.0]])
     x, P = np.array([10.0, 1.0, 20.0, -1.0]), ratio * np.eye(4)
@@ -167,7 +167,7 @@ def test_a_start_in_the_plane_is_followed_as_in_fewer_dimensions(turn):
     rng = np.random.default_rng(3)
     F2, Q2, H2, R = (
         ncv_transition(0.5, dim=1),
-        wna_process_noise(0.5, 0.1, dim=1),
+        cwna_process_noise(0.5, 0.1, dim=1),
         np.eye(1, 2),
         [[0.2]],
     )
@@ -208,12 +208,12 @@ def test_a_start_in_the_plane_is_followed_as_in_fewer_dimensions(turn):
         assert np.abs((turn.T @ P @ turn)[..., 2:, 2:]).max() < 1e-14
 
 
-@pytest.mark.parametrize("noise", ["common", "independent"])
+@pytest.mark.parametrize("noise", ["shared", "per_axis"])
 def test_a_start_from_the_likelihood_in_a_plane_is_followed_for_one_record_and_for_many(noise):
     array, T = RadarArray.linear(5, 0.4), 0.001
     path = [0.5, 0.2, 0, -1, 0.5, 0] + np.arange(40)[:, None] * T * np.array([-1, 0.5, 0, 0, 0, 0])
     z = doppler_shift(path, array) + 0.1 * np.random.default_rng(1).standard_normal((3, 40, 5))
-    begin = ml_start(
+    begin = ml_initialize(
         z[:, :30], array, 0.1, T, ([0.1, -1, 0, -2, -2, 0], [2, 1, 0, 2, 2, 0]), at="last"
     )
     together = ekf(z[:, 30:], array, begin.x, begin.P, T, 1e-3, 0.1, noise)
@@ -223,13 +223,13 @@ def test_a_start_from_the_likelihood_in_a_plane_is_followed_for_one_record_and_f
     assert_covariance(together.P)
     again = ekf(z[:, 35:], array, together.x[:, 4], together.P[:, 4], T, 1e-3, 0.1, noise)
     np.testing.assert_allclose(again.x, together.x[:, 5:], rtol=0, atol=1e-12)
-    if noise == "independent":
+    if noise == "per_axis":
         # Noise across the plane is none of its own: the errors across stay below what it allows.
         assert (np.abs(together.x[..., 2]) < 1e-6).all()
 
 
 def test_the_gain_of_a_settled_filter_is_that_of_its_covariance():
-    F, Q = ncv_transition(1.0, dim=1), wna_process_noise(1.0, 0.1, dim=1)
+    F, Q = ncv_transition(1.0, dim=1), cwna_process_noise(1.0, 0.1, dim=1)
     H, R = np.eye(1, 2), np.array([[2.0]])
     K, P = steady_state_gain(F, Q, H, R)
     assert_covariance(P)

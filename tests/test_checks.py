@@ -117,9 +117,9 @@ SETTINGS = [
     (lambda: constant_velocity(0, 0.4), "T must be positive, got 0.0"),
     (lambda: constant_velocity(1e100, 0.4), "T must give a finite Q"),
     (lambda: constant_velocity(1e300, 0.4), "T must be a number whose square"),
-    (lambda: constant_velocity(1e-3, 1e200), "sigma_p must be a number whose square"),
-    (lambda: constant_velocity(1e-3, [0.4, 0.4]), "sigma_p must be one number"),
-    (lambda: constant_velocity(1e-3, 0.4, "white"), "noise must be one of 'common'"),
+    (lambda: constant_velocity(1e-3, 1e200), "sigma_a must be a number whose square"),
+    (lambda: constant_velocity(1e-3, [0.4, 0.4]), "sigma_a must be one number"),
+    (lambda: constant_velocity(1e-3, 0.4, "white"), "noise must be one of 'shared'"),
     (lambda: doppler_shift(np.ones(6), np.zeros((6, 3))), "array must be a RadarArray"),
     (lambda: chi2_interval(10**400), "dof must be a whole number"),
 ]

@@ -51,7 +51,7 @@ T = 0.001
 samples = 20
 sigma_f = 0.4
 [tracker]
-sigma_p = 0.4
+sigma_a = 0.4
 P0_diagonal = [0.1, 0.1, 0.1, 0.1, 0.1, 0.1]
 """,
 }
@@ -122,7 +122,7 @@ def test_an_entry_that_is_unknown_is_refused(what, tmp_path):
     refused(what, tmp_path / "a.toml", TEXTS[what] + "\n[extra]\na = 1\n", "extra")
 
 
-NUMBERS = {"published", "rounding", "n", "radius", "T", "samples", "sigma_f", "sigma_p"}
+NUMBERS = {"published", "rounding", "n", "radius", "T", "samples", "sigma_f", "sigma_a"}
 LISTS = {"x0", "P0_diagonal"}
 BAD = {
     "of_text": ["1", "1.5", "true", "nan", "[1]", "['a']", "{a = 1}", "2020-01-01", "''"],

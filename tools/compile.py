@@ -6,7 +6,7 @@ processes that start together, as those of the tests do, would all compile the s
 
 import numpy as np
 
-from dopplerlib import RadarArray, ekf, ml_frequency, ml_start
+from dopplerlib import RadarArray, ekf, ml_frequency, ml_initialize
 from dopplerlib.estimation._ekf_loop import LANES
 from dopplerlib.systems import valarmathi
 from tools.command import parser, start
@@ -20,7 +20,7 @@ def main(argv=None):
     for runs in (1, LANES):
         z = np.zeros((runs, 2, 6))
         ekf(z, array, start, np.eye(6), 0.001, 1.0, 1.0)
-    ml_start(z, array, 1.0, 0.001, box)
+    ml_initialize(z, array, 1.0, 0.001, box)
     ml_frequency(np.ones(16, complex), 1.0)
     rng = np.random.default_rng(1)
     table = valarmathi.window_table([0, 10], [0, 10], rng=rng, runs=1)

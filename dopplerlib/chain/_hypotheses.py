@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 
 from ..estimation.extended_kalman import ekf
-from ..estimation.maximum_likelihood import ml_start
+from ..estimation.maximum_likelihood import ml_initialize
 from ..model.doppler import doppler_jacobian
 
 # Hypotheses whose chi-square is higher than the least by this have a likelihood of 3e-7 of it.
@@ -55,7 +55,7 @@ def hypotheses(z, std, array, T, apart, boxes):
     total = np.sum(np.where(missing, 0.0, std[:, early]) ** 2, axis=(1, 2))
     variance = total / np.maximum(np.sum(~missing, axis=(1, 2)), 1)
     # The search gets a deviation of one; its chi-squares are divided by the variance afterwards.
-    found = [ml_start(z, array, 1.0, apart * T, box, at="last") for box in boxes]
+    found = [ml_initialize(z, array, 1.0, apart * T, box, at="last") for box in boxes]
     states, costs = [s.x for s in found], [s.cost for s in found]
     if len(boxes) == 1:  # no plane cuts the box: the second-best state is the other hypothesis
         states, costs = [*states, found[0].second_x], [*costs, found[0].second_cost]
@@ -63,7 +63,7 @@ def hypotheses(z, std, array, T, apart, boxes):
     return np.stack(states, axis=1), np.stack(costs, axis=1) / variance[:, None], weights
 
 
-def filters(z, std, weights, array, T, used, apart, sigma_p, free, states, costs):
+def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs):
     """Return x, P, nis, memory and score of the filters from the hypotheses of one run.
 
     `free` (6,) says which components of the state are unknown at the start.
@@ -81,7 +81,7 @@ def filters(z, std, weights, array, T, used, apart, sigma_p, free, states, costs
         if shape[1] > 1:
             # The filter wants a number for what is missing, and does not use it.
             sigma = np.where(np.isinf(std[used:]), 1.0, std[used:])
-            t = ekf(z[used:], array, states[i], covariance, T, sigma_p, sigma, workers=1)
+            t = ekf(z[used:], array, states[i], covariance, T, sigma_a, sigma, workers=1)
             x[i, 1:], P[i, 1:], nis[i] = t.x, t.P, t.nis
             factor = _factor(t.S, np.isnan(t.innovation))
             score[i, 1:] += np.cumsum(_misfit(t.nis, factor))

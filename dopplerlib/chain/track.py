@@ -28,7 +28,7 @@ class IqTrack:
     ----------
     time : ndarray, shape (K,)
         Time in s to which each Doppler shift is taken to belong.
-    known : ndarray, shape (K,)
+    available_at : ndarray, shape (K,)
         Time on the clock at which it can be known: the end of its window.
     shift, shift_std : ndarray, shape (..., K, N)
         Doppler shifts in Hz and the deviations with which they were used. NaN and infinite where a
@@ -42,7 +42,7 @@ class IqTrack:
         Their covariances.
     nis : ndarray, shape (..., H, K - used)
         Normalized innovation squared.
-    memory : ndarray, shape (...)
+    lag1_autocorrelation : ndarray, shape (...)
         Autocorrelation of the normalized innovations from one sample to the next, averaged over the
         sensors, for the hypothesis that is the likeliest in the end; NaN if a sensor is missing in
         any sample.
@@ -51,7 +51,7 @@ class IqTrack:
         no such hypothesis. The first one is the chi-square of the start.
     degrees : ndarray, shape (...)
         Degrees of freedom of this chi-square: shifts that are there less unknowns.
-    sigma_p : float
+    velocity_random_walk : float
         Standard deviation in m/s of what a second does to each velocity, see `track_iq`.
 
     Raises
@@ -73,17 +73,17 @@ class IqTrack:
     """
 
     time: np.ndarray
-    known: np.ndarray
+    available_at: np.ndarray
     shift: np.ndarray
     shift_std: np.ndarray
     used: int
     x: np.ndarray
     P: np.ndarray
     nis: np.ndarray
-    memory: np.ndarray
+    lag1_autocorrelation: np.ndarray
     score: np.ndarray
     degrees: np.ndarray
-    sigma_p: float
+    velocity_random_walk: float
 
     def __post_init__(self):
         """Check the fields."""
@@ -93,21 +93,25 @@ class IqTrack:
         x = _checks.measured("x", self.x, (None, 1 + K - used, 6))
         each = *leading, x.shape[len(leading)], 1 + K - used
         shapes = {
-            "time": (K,), "known": (K,), "shift": shift.shape, "shift_std": shift.shape,
+            "time": (K,), "available_at": (K,), "shift": shift.shape, "shift_std": shift.shape,
             "x": (*each, 6), "P": (*each, 6, 6), "nis": (*each[:-1], K - used),
-            "memory": leading, "score": each, "degrees": leading,
+            "lag1_autocorrelation": leading, "score": each, "degrees": leading,
         }  # fmt: skip
         for name, shape in shapes.items():
             values = _checks.real(name, getattr(self, name))
             if values.shape != shape:
                 raise ValueError(f"{name} must have shape {shape}, got {values.shape}")
-            if name in ("time", "known", "degrees"):
+            if name in ("time", "available_at", "degrees"):
                 _checks.moderate(name, values)
             elif name not in ("shift_std", "score"):
                 _checks.measured(name, values, ())
             object.__setattr__(self, name, values)
         object.__setattr__(self, "used", used)
-        object.__setattr__(self, "sigma_p", _checks.moderate_number("sigma_p", self.sigma_p))
+        object.__setattr__(
+            self,
+            "velocity_random_walk",
+            _checks.moderate_number("velocity_random_walk", self.velocity_random_walk),
+        )
 
     @property
     @_checks.quiet
@@ -115,7 +119,7 @@ class IqTrack:
         """Whether the chi-square of the start is at most a hundred times its degrees of freedom.
 
         Shape (...). If not, no straight flight in the box explains the shifts, or there was no
-        start; for the usual reasons see `Start.plausible`.
+        start; for the usual reasons see `InitialEstimate.plausible`.
         """
         return self.score[..., 0].min(axis=-1) <= IMPLAUSIBLE * np.maximum(self.degrees, 1)
 
@@ -127,12 +131,12 @@ class IqTrack:
         """
         return _of_each(self.nis, np.argmin(self.score[..., -1], axis=-1))
 
-    def samples_at(self, moment: float) -> int:
-        """Return how many samples of the filter are known at a moment.
+    def samples_at(self, time: float) -> int:
+        """Return how many samples of the filter are known at a time.
 
         Parameters
         ----------
-        moment : float
+        time : float
             Time on the clock in s.
 
         Returns
@@ -142,23 +146,23 @@ class IqTrack:
         Raises
         ------
         ValueError
-            If `moment` is before the start is known.
+            If `time` is before the start is known.
         """
-        moment = _checks.one_number("moment", moment, _checks.moderate)
-        k = int(np.sum(self.known <= moment + 1e-9)) - self.used
+        time = _checks.one_number("time", time, _checks.moderate)
+        k = int(np.sum(self.available_at <= time + 1e-9)) - self.used
         if k < 0:
             raise ValueError(
-                f"moment must not be before {self.known[self.used - 1]:.4g} s, got {moment}"
+                f"time must not be before {self.available_at[self.used - 1]:.4g} s, got {time}"
             )
         return k
 
     @_checks.quiet
-    def at(self, moment: float, carry: bool = True) -> tuple[FloatArray, FloatArray, IntArray]:
-        """Return what is known at a moment about the state at that moment.
+    def at(self, time: float, carry: bool = True) -> tuple[FloatArray, FloatArray, IntArray]:
+        """Return what is known at a time about the state at that time.
 
         Parameters
         ----------
-        moment : float
+        time : float
             Time on the clock in s, not before the start is known.
         carry : bool
             Whether all hypotheses are carried on: then whichever is the likeliest so far counts,
@@ -176,15 +180,15 @@ class IqTrack:
         Raises
         ------
         ValueError
-            If `moment` is before the start is known.
+            If `time` is before the start is known.
         """
-        k = self.samples_at(moment)
+        k = self.samples_at(time)
         carry = _checks.one_boolean("carry", carry)
         chosen = np.argmin(self.score[..., k if carry else 0], axis=-1)
         x, P = _of_each(self.x[..., k, :], chosen), _of_each(self.P[..., k, :, :], chosen)
-        ahead = float(moment) - self.time[self.used + k - 1]
+        ahead = float(time) - self.time[self.used + k - 1]
         if ahead > 1e-9:
-            F, Q = constant_velocity(ahead, self.sigma_p / np.sqrt(ahead))
+            F, Q = constant_velocity(ahead, self.velocity_random_walk / np.sqrt(ahead))
             x, P = x @ F.T, F @ P @ F.T + Q
         return x, P, chosen
 
@@ -194,7 +198,7 @@ def track_iq(
     box: tuple[ArrayLike, ArrayLike],
     *,
     speed_limit: float,
-    sigma_p: float,
+    velocity_random_walk: float,
     window: float,
     start: float,
     hop: float | None = None,
@@ -202,7 +206,7 @@ def track_iq(
     dc_until: float | None = None,
     balance: bool = True,
     estimator: Callable[..., Any] = ml_frequency,
-    inflate: float = 1.0,
+    variance_inflation: float = 1.0,
     least_snr: float = 20.0,
     search: Literal["parts", "whole"] = "parts",
 ) -> IqTrack:
@@ -218,7 +222,7 @@ def track_iq(
         component at the start, and with a coordinate its velocity at 0.
     speed_limit : float
         Largest speed in m/s. Doppler shifts are searched for up to that of it.
-    sigma_p : float
+    velocity_random_walk : float
         Standard deviation in m/s by which each velocity wanders in a second, and by sqrt(t) times
         as much in t seconds, whatever the hop. With a deviation of the acceleration as
         `constant_velocity` takes it for an interval T, it is that times sqrt(T).
@@ -239,14 +243,15 @@ def track_iq(
         Whether the branches are made equal, see `correct_iq_imbalance`.
     estimator : callable
         What finds the frequency of a window, see `sliding_doppler`.
-    inflate : float
+    variance_inflation : float
         Factor on the variances of the shifts.
     least_snr : float
         What the measured signal-to-noise ratio of a whole window must be for its shift to be used.
     search : {"parts", "whole"}
         Where hypotheses about the start come from. "parts": the likeliest state in each part of
         the box between the planes through the middle of the array. "whole": the likeliest and the
-        second one that `ml_start` finds in the whole box; so it is also if there is one part only.
+        second one that `ml_initialize` finds in the whole box; so it is also if there is one part
+        only.
 
     Returns
     -------
@@ -293,13 +298,13 @@ def track_iq(
     >>> path = [1.5, 2.5, 1] + np.arange(2000)[:, None] / 1e3 * [1, 0.3, 0]
     >>> iq = Baseband(iq_from_geometry(path, array, 20, rng=np.random.default_rng(1)), 1e3, array)
     >>> box = [0, 0, 1], [6, 5, 1]
-    >>> found = track_iq(iq, box, speed_limit=2, sigma_p=0.1, window=0.05, start=0.5)
+    >>> found = track_iq(iq, box, speed_limit=2, velocity_random_walk=0.1, window=0.05, start=0.5)
     >>> bool(found.plausible), found.at(1.999)[0].round(1).tolist()
     (True, [3.5, 3.1, 1.0, 1.0, 0.3, 0.0])
     """
     _checks.instance("iq", iq, Baseband)
-    inflate = _checks.moderate_number("inflate", inflate)
-    sigma_p = _checks.moderate_number("sigma_p", sigma_p)
+    variance_inflation = _checks.moderate_number("variance_inflation", variance_inflation)
+    velocity_random_walk = _checks.moderate_number("velocity_random_walk", velocity_random_walk)
     least_snr = _checks.moderate_number("least_snr", least_snr)
     top = _checks.moderate_number("speed_limit", speed_limit) * iq.array.doppler_per_speed
     if top > iq.fs / 2:
@@ -319,11 +324,11 @@ def track_iq(
     x, valid = (v.reshape(-1, *v.shape[-2:]) for v in (x, valid))
     d = sliding_doppler(x, iq.fs, n, step, estimator, band=(-top, top), valid=valid)
     time = iq.first + d.time - iq.delay
-    known = iq.first + (np.arange(len(d.time)) * step + n - 1) / iq.fs
+    available_at = iq.first + (np.arange(len(d.time)) * step + n - 1) / iq.fs
     seen = n * d.snr >= least_snr
     z = np.where(seen, d.frequency, np.nan)
-    std = np.where(seen, d.frequency_std * np.sqrt(inflate / iq.noise_gain), np.inf)
-    used = int(np.sum(known <= _checks.positive_number("start", start) + 1e-9))
+    std = np.where(seen, d.frequency_std * np.sqrt(variance_inflation / iq.noise_gain), np.inf)
+    used = int(np.sum(available_at <= _checks.positive_number("start", start) + 1e-9))
     if used < 2:
         raise ValueError(f"start must hold at least two windows, got {used} in {start} s")
     T = step / iq.fs
@@ -338,7 +343,7 @@ def track_iq(
     states, costs, weights = hypotheses(z[:, :used], std[:, :used], iq.array, T, apart, boxes)
     degrees = np.isfinite(weights).sum(axis=(1, 2)) - free.sum()
     _warn_unless_plausible(costs, degrees)
-    fixed = iq.array, T, used, apart, sigma_p / np.sqrt(T), free
+    fixed = iq.array, T, used, apart, velocity_random_walk / np.sqrt(T), free
     try:
         each = [
             filters(z, s, early, *fixed, *starts)
@@ -346,13 +351,16 @@ def track_iq(
         ]
     except np.linalg.LinAlgError:
         raise ValueError(
-            f"sigma_p must leave something of the noise of shifts to be seen, got {sigma_p:g}"
+            "velocity_random_walk must leave something of the noise of shifts to be seen, "
+            f"got {velocity_random_walk:g}"
         ) from None
     fields = z, std, *map(np.array, zip(*each, strict=True)), degrees
     z, std, x, P, nis, memory, score, degrees = (
         field.reshape((*leading, *field.shape[1:])) for field in fields
     )
-    return IqTrack(time, known, z, std, used, x, P, nis, memory, score, degrees, sigma_p)
+    return IqTrack(
+        time, available_at, z, std, used, x, P, nis, memory, score, degrees, velocity_random_walk
+    )
 
 
 def _of_each(values, chosen):

@@ -91,7 +91,7 @@ def _changed(before, after):
 
 
 def noise_block():
-    """Return the rest of the time update of Table 1: P + g g', for one column of G sigma_p (Eq 9).
+    """Return the rest of the time update of Table 1: P + g g', for one column of G sigma_a (Eq 9).
 
     From the last axis to the first, each takes its share of the noise and leaves the rest, along
     what is left of g, to the axes before (Agee and Turner 1972). All terms are positive.

@@ -1,4 +1,4 @@
-"""The search behind `ml_start`, compiled.
+"""The search behind `ml_initialize`, compiled.
 
 One run goes through four steps:
 

@@ -10,7 +10,7 @@ import numpy as np
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
 from ..model.doppler import check_clear_of_sensors
-from ..model.motion import acceleration_gain
+from ..model.motion import dwna_gain
 from ..model.radar_array import RadarArray
 from .track import Track
 
@@ -24,12 +24,12 @@ def ekf(
     x0: ArrayLike,
     P0: ArrayLike,
     T: ArrayLike,
-    sigma_p: float,
+    sigma_a: float,
     sigma_f: ArrayLike,
-    noise: Literal["common", "independent"] = "common",
+    noise: Literal["shared", "per_axis"] = "shared",
     gate: Literal["upper", "two-sided"] | None = None,
     *,
-    confidence: float = 0.95,
+    gate_probability: float = 0.95,
     keep: Iterable[str] = _OPTIONAL,
     workers: int | None = None,
 ) -> Track:
@@ -50,20 +50,20 @@ def ekf(
         `x0` and `P0` broadcast against those of `z`.
     T : array_like, scalar or shape (K,)
         Sampling interval in s; with uneven times the interval before each sample.
-    sigma_p : float
+    sigma_a : float
         Standard deviation of the acceleration in m/s^2, see `constant_velocity`.
     sigma_f : array_like, broadcast to (K, N)
         Standard deviation of the measurements in Hz: one number, one for each sensor, or one for
         each sample and sensor.
-    noise : {"common", "independent"}
+    noise : {"shared", "per_axis"}
         Process noise, see `constant_velocity`.
     gate : {None, "upper", "two-sided"}
         Which measurements are used. None: all. "upper": those whose NIS is below the chi-square
-        quantile `confidence`. "two-sided": those whose NIS is inside the central interval of
+        quantile `gate_probability`. "two-sided": those whose NIS is inside the central interval of
         that probability, which also refuses measurements that fit too well; Fig 6 of the paper
         shows this one. The degrees of freedom are the number of sensors that are there. A
         refused measurement leaves the state predicted.
-    confidence : float
+    gate_probability : float
         Probability of the gate.
     keep : sequence of {"P", "innovation", "S"}
         Fields of the result that are wanted; the others are None. Ten thousand runs of a
@@ -102,12 +102,12 @@ def ekf(
     >>> from dopplerlib import Scenario, simulate
     >>> scenario = Scenario(
     ...     RadarArray.ring(6, 0.2), x0=[0.8, 0.1, 0.1, -0.7, 0, 0],
-    ...     T=0.001, samples=100, sigma_f=0.4, sigma_p=0.4, P0=0.01 * np.eye(6),
+    ...     T=0.001, samples=100, sigma_f=0.4, sigma_a=0.4, P0=0.01 * np.eye(6),
     ... )
     >>> truth, z = simulate(scenario, 16, rng=np.random.default_rng(1))
     >>> start = scenario.x0 + [0.05, 0.02, -0.03, 0, 0, 0]
     >>> track = ekf(
-    ...     z, scenario.array, start, scenario.P0, T=0.001, sigma_p=0.4, sigma_f=0.4
+    ...     z, scenario.array, start, scenario.P0, T=0.001, sigma_a=0.4, sigma_f=0.4
     ... )
     >>> track.x.shape, track.P.shape, track.nis.shape
     ((16, 100, 6), (16, 100, 6, 6), (16, 100))
@@ -115,10 +115,10 @@ def ekf(
     _checks.instance("array", array, RadarArray)
     z = _measurements(z, array)
     T = _intervals(T, z.shape[-2])
-    G, sigma_p = acceleration_gain(T, sigma_p, noise)
-    columns = np.ascontiguousarray(sigma_p * np.swapaxes(G, -1, -2))
+    G, sigma_a = dwna_gain(T, sigma_a, noise)
+    columns = np.ascontiguousarray(sigma_a * np.swapaxes(G, -1, -2))
     variance = _variance(sigma_f, z.shape[-2:])
-    lower, upper = gate_bounds(gate, len(array), confidence)
+    lower, upper = gate_bounds(gate, len(array), gate_probability)
     x0 = _checks.finite("x0", x0, (6,))
     check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
     P0 = _checks.covariance("P0", P0, 6, definite=False)
@@ -176,7 +176,7 @@ def ekf(
 
 @_checks.quiet
 def gate_bounds(
-    gate: Literal["upper", "two-sided"] | None, sensors: int, confidence: float = 0.95
+    gate: Literal["upper", "two-sided"] | None, sensors: int, gate_probability: float = 0.95
 ) -> tuple[FloatArray, FloatArray]:
     """Return the bounds of the gate on NIS for 0, 1, ..., `sensors` measurements.
 
@@ -186,7 +186,7 @@ def gate_bounds(
         See `ekf`.
     sensors : int
         Largest number of measurements N.
-    confidence : float
+    gate_probability : float
         Probability that a measurement of a consistent filter passes.
 
     Returns
@@ -197,8 +197,8 @@ def gate_bounds(
     Raises
     ------
     ValueError
-        If `gate` is unknown, `sensors` is not a whole number of at most a million, or `confidence`
-        not between 0 and 1.
+        If `gate` is unknown, `sensors` is not a whole number of at most a million, or
+        `gate_probability` not between 0 and 1.
 
     Notes
     -----
@@ -214,14 +214,14 @@ def gate_bounds(
     sensors = _checks.whole_number("sensors", sensors, least=0)
     if sensors > 10**6:  # 8 MB
         raise ValueError(f"sensors must be at most a million, got {sensors}")
-    confidence = _checks.probability("confidence", confidence)
+    gate_probability = _checks.probability("gate_probability", gate_probability)
     lower = np.full(sensors + 1, -np.inf)
     upper = np.full(sensors + 1, np.inf)
     if gate is not None:
         from scipy.special import chdtri  # upper-tail quantile of chi-square
 
         dof = np.arange(1, sensors + 1)
-        tail = (1 - confidence) / (1 if gate == "upper" else 2)
+        tail = (1 - gate_probability) / (1 if gate == "upper" else 2)
         upper[1:] = chdtri(dof, tail)
         if gate == "two-sided":
             lower[1:] = chdtri(dof, 1 - tail)

@@ -15,7 +15,10 @@ from .extended_kalman import _measurements
 
 # Points of the search grid on each axis, by the number of axes that are free. If nothing moves the
 # grid is most of the work; if something does it is a small part, and a fine one misses less.
-_POINTS = {"static": {0: 1, 1: 64, 2: 16, 3: 11}, "moving": {0: 1, 1: 64, 2: 24, 3: 16}}
+_POINTS = {
+    "stationary": {0: 1, 1: 64, 2: 16, 3: 11},
+    "constant_velocity": {0: 1, 1: 64, 2: 24, 3: 16},
+}
 
 # Chi-square of a start over its degrees of freedom: 1 if all is right, 100 if the deviations are a
 # tenth of what they should be. What is beyond has another reason.
@@ -27,11 +30,11 @@ _WINDOW = 0.25
 
 
 class ImplausibleStart(UserWarning):
-    """A start does not explain the measurements that it comes from, see `Start.plausible`."""
+    """An initial estimate does not explain its measurements, see `InitialEstimate.plausible`."""
 
 
 @record
-class Start:
+class InitialEstimate:
     """Maximum-likelihood estimates; leading axes are those of the measurements.
 
     Attributes
@@ -76,7 +79,7 @@ class Start:
 
         If not, no straight flight in the box explains the measurements. Usual reasons: I and Q are
         exchanged, so that all Doppler shifts have the wrong sign; sensors are in another order
-        than their positions; or the true state is not in the box. With the likelihood "static",
+        than their positions; or the true state is not in the box. With the likelihood "stationary",
         a target that moves is a reason, too.
         """
         cost, degrees = _checks.real("cost", self.cost), _checks.real("degrees", self.degrees)
@@ -85,18 +88,18 @@ class Start:
 
 
 @_checks.quiet
-def ml_start(
+def ml_initialize(
     z: ArrayLike,
     array: RadarArray,
     sigma_f: ArrayLike,
     T: float,
     box: tuple[ArrayLike, ArrayLike],
-    likelihood: Literal["moving", "static"] = "moving",
+    likelihood: Literal["constant_velocity", "stationary"] = "constant_velocity",
     *,
     at: Literal["first", "last"] = "first",
     workers: int | None = None,
-) -> Start:
-    """Estimate states from scratch: the global maximum of the likelihood in a box.
+) -> InitialEstimate:
+    """ConfidenceInterval states from scratch: the global maximum of the likelihood in a box.
 
     Parameters
     ----------
@@ -111,9 +114,9 @@ def ml_start(
     box : pair of array_like, shape (6,)
         Lower and upper bounds of the state at the first sample. Equal bounds fix a component:
         z = v_z = 0 makes the problem one in a plane.
-    likelihood : {"moving", "static"}
-        "moving": the target moves at constant velocity. "static": its state is the same at all
-        samples, Eq 10 as printed.
+    likelihood : {"constant_velocity", "stationary"}
+        "constant_velocity": the target moves at constant velocity. "stationary": its state is the
+        same at all samples, Eq 10 as printed.
     at : {"first", "last"}
         Sample to which `x`, `P` and `second_x` belong. Under the static likelihood they are the
         same.
@@ -123,7 +126,7 @@ def ml_start(
 
     Returns
     -------
-    Start
+    InitialEstimate
         Leading axes are those of `z`. A run that is too incomplete to be solved is NaN, with
         `converged` and `identifiable` False.
 
@@ -147,7 +150,7 @@ def ml_start(
     >>> array = RadarArray.linear(5, 0.4)
     >>> z = doppler_shift([0.5, 0.2, 0, -1, 0.5, 0], array)[None]
     >>> box = [0.1, -1, 0, -2, -2, 0], [2, 1, 0, 2, 2, 0]
-    >>> (ml_start(z, array, 0.1, 0.001, box).x.round(6) + 0.0).tolist()
+    >>> (ml_initialize(z, array, 0.1, 0.001, box).x.round(6) + 0.0).tolist()
     [0.5, 0.2, 0.0, -1.0, 0.5, 0.0]
     """
     _checks.instance("array", array, RadarArray)
@@ -156,7 +159,7 @@ def ml_start(
     sigma_f = _checks.deviation("sigma_f", sigma_f)
     deviations = np.ascontiguousarray(_checks.each_run("sigma_f", sigma_f, z.shape[-2:], ())).view()
     lower, upper = _box(box)
-    _checks.one_of("likelihood", likelihood, ("moving", "static"))
+    _checks.one_of("likelihood", likelihood, ("constant_velocity", "stationary"))
     _checks.one_of("at", at, ("first", "last"))
     workers = (os.cpu_count() or 1) if workers is None else _checks.whole_number("workers", workers)
 
@@ -164,7 +167,7 @@ def ml_start(
     runs = int(np.prod(batch))
     free = lower < upper
     needed = int(free.sum())
-    moving = likelihood == "moving" and samples > 1
+    moving = likelihood == "constant_velocity" and samples > 1
     values = samples * sensors if moving else sensors
     if values < needed:
         raise ValueError(
@@ -180,7 +183,7 @@ def ml_start(
     if speed * T * samples > _WINDOW * radius:
         window = max(2, int(_WINDOW * radius / (speed * T)))
     window = min(window, samples)
-    points = _POINTS["moving" if moving else "static"][int(free[:3].sum())]
+    points = _POINTS["constant_velocity" if moving else "stationary"][int(free[:3].sum())]
     grid, shape = _grid(lower, upper, center, radius, points)
     z = np.ascontiguousarray(z).reshape(runs, samples, sensors)
     # Whether an array may be written to is part of its type: numba would compile once for each.
@@ -222,7 +225,7 @@ def ml_start(
     P[solved], identifiable[solved] = inverse_information(information[solved], free)
     degrees = np.sum(~np.isnan(z), axis=(1, 2)) - needed
     fields = x, P, cost, at_bound, identifiable, converged, second_x, second_cost, degrees
-    return Start(*(field.reshape((*batch, *field.shape[1:])) for field in fields))
+    return InitialEstimate(*(field.reshape((*batch, *field.shape[1:])) for field in fields))
 
 
 def _box(box):

@@ -29,7 +29,7 @@ def ekf_records(
     *,
     wrap: Iterable[int] = (),
     gate: Literal["upper", "two-sided"] | None = None,
-    confidence: float = 0.95,
+    gate_probability: float = 0.95,
 ) -> Track:
     """Filter whole records with an extended Kalman filter, for any motion and any measurement.
 
@@ -61,7 +61,7 @@ def ekf_records(
         [-pi, pi).
     gate : {None, "upper", "two-sided"}
         Which measurements are used, see `ekf`. A refused one leaves the state predicted.
-    confidence : float
+    gate_probability : float
         Probability of the gate.
 
     Returns
@@ -76,7 +76,8 @@ def ekf_records(
         If shapes do not fit, a value is not finite (but for a NaN in `z`), also of what functions
         return and of what comes out, a matrix is not a covariance (`P0` and `Q` may be singular),
         `R` is so small that the covariance of an innovation is singular to rounding, `wrap` names a
-        component that the measurement does not have, or `gate` or `confidence` is not as described.
+        component that the measurement does not have, or `gate` or `gate_probability` is not as
+        described.
 
     Notes
     -----
@@ -93,7 +94,7 @@ def ekf_records(
     >>> track.x[:, 0].round(2).tolist()
     [2.18, 2.11, 2.09]
     """
-    z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, confidence)
+    z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability)
     batch, (K, m), n = z.shape[:-2], z.shape[-2:], x.shape[-1]
     f, F = _each("f", f, K, (batch, (n,))), _each("F", F, K, (batch, (n, n)))
     h, H = _each("h", h, K, (batch, (m,))), _each("H", H, K, (batch, (m, n)))
@@ -126,7 +127,7 @@ def ukf(
     kappa: float = 0.0,
     wrap: Iterable[int] = (),
     gate: Literal["upper", "two-sided"] | None = None,
-    confidence: float = 0.95,
+    gate_probability: float = 0.95,
 ) -> Track:
     """Filter whole records with an unscented or cubature Kalman filter, which needs no Jacobian.
 
@@ -161,7 +162,7 @@ def ukf(
         Components of the measurement that are angles in rad.
     gate : {None, "upper", "two-sided"}
         Which measurements are used, see `ekf`. A refused one leaves the state predicted.
-    confidence : float
+    gate_probability : float
         Probability of the gate.
 
     Returns
@@ -197,7 +198,7 @@ def ukf(
     >>> track.x[:, 0].round(2).tolist()
     [2.07, 1.97, 1.99]
     """
-    z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, confidence)
+    z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability)
     batch, (K, m), n = z.shape[:-2], z.shape[-2:], x.shape[-1]
     _checks.one_of("points", points, ("cubature", "unscented"))
     scale = sigma_points.scaling(n, alpha, beta, kappa)
@@ -221,7 +222,7 @@ def ukf(
     return recursion.finite("z, f, Q, h, R, x0, P0", track)
 
 
-def _arguments(z, Q, R, x0, P0, wrap, gate, confidence):
+def _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability):
     """Return what both filters are given, checked."""
     x0 = _checks.finite("x0", x0, (None,))
     n = x0.shape[-1]
@@ -235,7 +236,7 @@ def _arguments(z, Q, R, x0, P0, wrap, gate, confidence):
     R = _checks.each_sample("R", _checks.covariance("R", R, m), K, (m, m))
     x0 = _checks.each_run("x0", x0, batch, (n,))
     P0 = _checks.each_run("P0", P0, batch, (n, n))
-    bounds = gate_bounds(gate, m, confidence)
+    bounds = gate_bounds(gate, m, gate_probability)
     wrap = _checks.components("wrap", wrap, m)
     return z, Q, R, x0, P0, wrap, bounds if gate else None
 

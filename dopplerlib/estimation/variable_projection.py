@@ -9,7 +9,7 @@ from ..model.radar_array import RadarArray
 
 
 @_checks.quiet
-def best_velocity(
+def velocity_given_position(
     z: ArrayLike, array: RadarArray, sigma_f: ArrayLike, p: ArrayLike, in_plane: bool = False
 ) -> tuple[FloatArray, FloatArray]:
     """Return the velocity that explains Doppler shifts best if the position is known.
@@ -51,7 +51,7 @@ def best_velocity(
     >>> from dopplerlib import doppler_shift
     >>> array = RadarArray.ring(6, 0.2)
     >>> z = doppler_shift([0.8, 0.1, 0.1, -0.7, 0, 0.2], array)
-    >>> v, cost = best_velocity(z, array, 0.4, [0.8, 0.1, 0.1])
+    >>> v, cost = velocity_given_position(z, array, 0.4, [0.8, 0.1, 0.1])
     >>> (v.round(6) + 0.0).tolist(), bool(cost < 1e-9)
     ([-0.7, 0.0, 0.2], True)
     """

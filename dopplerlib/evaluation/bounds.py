@@ -13,7 +13,7 @@ def crlb(
     sigma_f: ArrayLike,
     K: int = 1,
     T: float = 0.001,
-    likelihood: Literal["static", "moving"] = "static",
+    likelihood: Literal["stationary", "constant_velocity"] = "stationary",
     *,
     free: ArrayLike | None = None,
 ) -> FloatArray:
@@ -31,7 +31,7 @@ def crlb(
         Number of samples.
     T : float
         Sampling interval in s.
-    likelihood : {"static", "moving"}
+    likelihood : {"stationary", "constant_velocity"}
         Whether the state is constant during the samples, or moves at constant velocity; see
         `fisher_information`.
     free : array_like of bool, shape (6,), optional

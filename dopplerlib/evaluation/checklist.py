@@ -121,7 +121,7 @@ def filter_checklist(
     Parameters
     ----------
     tracker : callable
-        ``tracker(z, array, x0, P0, T, sigma_p, sigma_f)`` gives a `Track`, like `dopplerlib.ekf`;
+        ``tracker(z, array, x0, P0, T, sigma_a, sigma_f)`` gives a `Track`, like `dopplerlib.ekf`;
         `z` has the shape (runs, K, N), and `x0` (runs, 6) belongs to one interval before.
     jacobian : callable
         ``jacobian(x, array)`` gives the derivative that the filter uses, shape (N, 6).
@@ -154,7 +154,7 @@ def filter_checklist(
     >>> from dopplerlib import doppler_jacobian, ekf
     >>> scenario = Scenario(
     ...     RadarArray.ring(6, 0.2), x0=[0.8, 0.1, 0.1, -0.7, 0, 0],
-    ...     T=0.001, samples=100, sigma_f=0.4, sigma_p=0.4, P0=0.1 * np.eye(6),
+    ...     T=0.001, samples=100, sigma_f=0.4, sigma_a=0.4, P0=0.1 * np.eye(6),
     ... )
     >>> rng = np.random.default_rng(1)
     >>> checks = filter_checklist(ekf, doppler_jacobian, scenario, rng=rng, runs=20, samples=20)
@@ -168,9 +168,9 @@ def filter_checklist(
     deviation = _checks.one_number("deviation", deviation, _checks.deviation)
     tracker = _checked(_checks.function("tracker", tracker))
     _checks.function("jacobian", jacobian)
-    F, Q = constant_velocity(s.T, s.sigma_p)
+    F, Q = constant_velocity(s.T, s.sigma_a)
     P0 = deviation**2 * np.eye(6)
-    settings = P0, s.T, s.sigma_p, s.sigma_f
+    settings = P0, s.T, s.sigma_a, s.sigma_f
     path, z, start = _world(s, F, P0, runs, samples, rng)
     track = tracker(z, s.array, start, *settings)
     calm = np.array([s.x0 + k * s.T * np.r_[s.x0[3:], 0, 0, 0] for k in range(samples)])
@@ -207,7 +207,7 @@ def _world(s, F, P0, runs, samples, rng):
     path = np.empty((runs, samples, 6))
     push = np.r_[np.full(3, s.T**2 / 2), np.full(3, s.T)]  # the one acceleration of Eq 17
     for k in range(samples):
-        x = x @ F.T + s.sigma_p * rng.standard_normal((runs, 1)) * push
+        x = x @ F.T + s.sigma_a * rng.standard_normal((runs, 1)) * push
         path[:, k] = x
     z = doppler_shift(path, s.array)
     return path, z + s.sigma_f * rng.standard_normal(z.shape), start
@@ -220,7 +220,7 @@ def _linear_limit(tracker, s, path, before, P0, F, Q, rng):
     noise = s.sigma_f * rng.standard_normal((len(path), len(s.array)))
     z = doppler_shift(path, s.array) + e * noise
     track = tracker(
-        z[None], s.array, (before + e * offset)[None], e**2 * P0, s.T, e * s.sigma_p, e * s.sigma_f
+        z[None], s.array, (before + e * offset)[None], e**2 * P0, s.T, e * s.sigma_a, e * s.sigma_f
     )
     R = s.sigma_f**2 * np.eye(len(s.array))
     linear = kf(noise, F, Q, doppler_jacobian(path, s.array), R, offset, P0)

@@ -6,7 +6,7 @@ from .. import _checks
 from .._typing import ArrayLike, FloatArray
 
 
-def errors_by_direction(error: ArrayLike, P: ArrayLike) -> FloatArray:
+def principal_axis_errors(error: ArrayLike, P: ArrayLike) -> FloatArray:
     """Return the errors along the principal axes of their covariance, each in its deviations.
 
     Parameters
@@ -37,7 +37,7 @@ def errors_by_direction(error: ArrayLike, P: ArrayLike) -> FloatArray:
     --------
     Wrong by four deviations in the direction that the filter believes to know best:
 
-    >>> errors_by_direction([0.5, 4.0], np.diag([100.0, 1.0])).round(2).tolist()
+    >>> principal_axis_errors([0.5, 4.0], np.diag([100.0, 1.0])).round(2).tolist()
     [0.05, 4.0]
     """
     error = _checks.finite("error", error, (None,))

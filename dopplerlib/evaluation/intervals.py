@@ -8,7 +8,7 @@ from .._typing import ArrayLike
 
 
 @record
-class Estimate:
+class ConfidenceInterval:
     """A number that was estimated from runs, and the interval that its uncertainty leaves.
 
     Attributes
@@ -27,7 +27,7 @@ class Estimate:
 
     Examples
     --------
-    >>> Estimate(2.0, 1.5, 2.5).half_width
+    >>> ConfidenceInterval(2.0, 1.5, 2.5).half_width
     0.5
     """
 
@@ -53,7 +53,7 @@ class Estimate:
         return f"{self.value:.3g} ({self.low:.3g} to {self.high:.3g})"
 
 
-def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Estimate:
+def mean_interval(values: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
     """Estimate the mean of what independent runs are drawn from.
 
     Parameters
@@ -65,7 +65,7 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Estimate:
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
 
     Raises
     ------
@@ -89,10 +89,10 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Estimate:
     values, size = _scaled(values)
     mean = values.mean()
     half = stdtrit(len(values) - 1, (1 + confidence) / 2) * values.std(ddof=1) / len(values) ** 0.5
-    return Estimate(*(float(end) * size for end in (mean, mean - half, mean + half)))
+    return ConfidenceInterval(*(float(end) * size for end in (mean, mean - half, mean + half)))
 
 
-def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> Estimate:
+def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
     """Estimate the root-mean-square error of what independent runs are drawn from.
 
     Parameters
@@ -104,7 +104,7 @@ def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> Estimate:
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
 
     Raises
     ------
@@ -124,10 +124,10 @@ def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> Estimate:
     errors, size = _scaled(_runs("errors", errors, 2))
     square = mean_interval(errors**2, confidence)
     ends = square.value, square.low, square.high
-    return Estimate(*(max(end, 0.0) ** 0.5 * size for end in ends))
+    return ConfidenceInterval(*(max(end, 0.0) ** 0.5 * size for end in ends))
 
 
-def share_interval(hits: ArrayLike, confidence: float = 0.95) -> Estimate:
+def proportion_interval(hits: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
     """Estimate the probability of an event from the runs in which it happened.
 
     Parameters
@@ -139,7 +139,7 @@ def share_interval(hits: ArrayLike, confidence: float = 0.95) -> Estimate:
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
 
     Raises
     ------
@@ -152,7 +152,7 @@ def share_interval(hits: ArrayLike, confidence: float = 0.95) -> Estimate:
 
     Examples
     --------
-    >>> print(share_interval([True] * 9 + [False]))
+    >>> print(proportion_interval([True] * 9 + [False]))
     0.9 (0.555 to 0.997)
     """
     from scipy.special import betaincinv
@@ -164,10 +164,12 @@ def share_interval(hits: ArrayLike, confidence: float = 0.95) -> Estimate:
     k, n = int(hits.sum()), len(hits)
     low = betaincinv(k, n - k + 1, tail) if k else 0.0
     high = betaincinv(k + 1, n - k, 1 - tail) if k < n else 1.0
-    return Estimate(k / n, float(low), float(high))
+    return ConfidenceInterval(k / n, float(low), float(high))
 
 
-def quantile_interval(values: ArrayLike, q: float = 0.5, confidence: float = 0.95) -> Estimate:
+def quantile_interval(
+    values: ArrayLike, q: float = 0.5, confidence: float = 0.95
+) -> ConfidenceInterval:
     """Estimate a quantile of what independent runs are drawn from: the median by default.
 
     Parameters
@@ -181,7 +183,7 @@ def quantile_interval(values: ArrayLike, q: float = 0.5, confidence: float = 0.9
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
         Ends that the runs are too few for are infinite.
 
     Raises
@@ -210,7 +212,7 @@ def quantile_interval(values: ArrayLike, q: float = 0.5, confidence: float = 0.9
     first, last = int(binom.ppf(tail, n, q)), int(binom.isf(tail, n, q)) + 1
     low = values[first - 1] if first >= 1 else -np.inf
     high = values[last - 1] if last <= n else np.inf
-    return Estimate(_quantile(values, q), float(low), float(high))
+    return ConfidenceInterval(_quantile(values, q), float(low), float(high))
 
 
 def _quantile(values, q):

@@ -7,18 +7,18 @@ from scipy.stats import norm
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray, IntArray
-from ..estimation.maximum_likelihood import ml_start
+from ..estimation.maximum_likelihood import ml_initialize
 from ..model.doppler import doppler_shift
 from ..model.information import SINGULAR, fisher_information, free_components
 from ..model.radar_array import RadarArray
 
 
-def seen_directions(
+def observable_rank(
     x: ArrayLike,
     array: RadarArray,
     K: int = 1,
     T: float = 0.001,
-    likelihood: Literal["static", "moving"] = "static",
+    likelihood: Literal["stationary", "constant_velocity"] = "stationary",
     *,
     free: ArrayLike | None = None,
 ) -> IntArray:
@@ -34,7 +34,7 @@ def seen_directions(
         Number of samples.
     T : float
         Sampling interval in s.
-    likelihood : {"static", "moving"}
+    likelihood : {"stationary", "constant_velocity"}
         See `fisher_information`.
     free : array_like of bool, shape (6,), optional
         Components that are unknown; all if None.
@@ -53,7 +53,7 @@ def seen_directions(
     Examples
     --------
     >>> from dopplerlib import RadarArray
-    >>> int(seen_directions([0.8, 0.1, 0.1, -0.7, 0, 0], RadarArray.ring(12, 0.2)))
+    >>> int(observable_rank([0.8, 0.1, 0.1, -0.7, 0, 0], RadarArray.ring(12, 0.2)))
     5
     """
     free = free_components(free, 6)
@@ -122,14 +122,14 @@ def rms_bounds(
     return *bounds, np.sqrt(np.where(reached, np.inf, square))
 
 
-def confusion(
+def nearest_ambiguity(
     x: ArrayLike,
     array: RadarArray,
     sigma_f: float,
     K: int,
     T: float,
     box: tuple[ArrayLike, ArrayLike],
-    likelihood: Literal["static", "moving"] = "moving",
+    likelihood: Literal["stationary", "constant_velocity"] = "constant_velocity",
 ) -> tuple[FloatArray, float]:
     """Return the second-best explanation of noise-free measurements, and how often it wins.
 
@@ -146,9 +146,9 @@ def confusion(
     T : float
         Sampling interval in s.
     box : pair of array_like, shape (6,)
-        Lower and upper bounds of the state, see `ml_start`.
-    likelihood : {"static", "moving"}
-        See `ml_start`.
+        Lower and upper bounds of the state, see `ml_initialize`.
+    likelihood : {"stationary", "constant_velocity"}
+        See `ml_initialize`.
 
     Returns
     -------
@@ -160,7 +160,7 @@ def confusion(
     Raises
     ------
     ValueError
-        If `x` is not one state, or an argument is refused by `ml_start`.
+        If `x` is not one state, or an argument is refused by `ml_initialize`.
 
     Notes
     -----
@@ -175,7 +175,7 @@ def confusion(
     >>> from dopplerlib import RadarArray
     >>> box = [0.5, -0.3, -0.3, -1.0, -0.5, -0.5], [1.2, 0.3, 0.3, -0.3, 0.5, 0.5]
     >>> x = [0.8, 0.1, 0.1, -0.7, 0.0, 0.0]
-    >>> rival, share = confusion(x, RadarArray.ring(6, 0.2), 0.4, 5, 0.01, box)
+    >>> rival, share = nearest_ambiguity(x, RadarArray.ring(6, 0.2), 0.4, 5, 0.01, box)
     >>> round(share, 2)
     0.43
     """
@@ -185,8 +185,11 @@ def confusion(
     K, T = _checks.whole_number("K", K), _checks.moderate_number("T", T)
     sigma_f = _checks.one_number("sigma_f", sigma_f, _checks.deviation)
     path = np.tile(x, (K, 1))
-    if _checks.one_of("likelihood", likelihood, ("static", "moving")) == "moving":
+    if (
+        _checks.one_of("likelihood", likelihood, ("stationary", "constant_velocity"))
+        == "constant_velocity"
+    ):
         path[:, :3] += T * np.arange(K)[:, None] * path[:, 3:]
-    start = ml_start(doppler_shift(path, array), array, sigma_f, T, box, likelihood)
+    start = ml_initialize(doppler_shift(path, array), array, sigma_f, T, box, likelihood)
     distance = np.sqrt(np.maximum(start.second_cost - start.cost, 0.0))
     return start.second_x, float(np.nan_to_num(norm.cdf(-distance / 2), nan=0.0))

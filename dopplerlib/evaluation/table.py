@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from .intervals import Estimate
+from .intervals import ConfidenceInterval
 
 
 @record
@@ -120,7 +120,7 @@ def _rows(rows, columns):
 
 
 def _value(name, value):
-    if isinstance(value, (str, Estimate)):
+    if isinstance(value, (str, ConfidenceInterval)):
         return value
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
@@ -170,7 +170,7 @@ def _text(value, digits):
         return value
     written = digits if isinstance(digits, str) else f"z.{digits}f"  # z: no -0.0
     plain = written.removeprefix("±")
-    if isinstance(value, Estimate):
+    if isinstance(value, ConfidenceInterval):
         ends = value.value, value.low, value.high, value.half_width
         one, low, high, half = (_number(number, plain) for number in ends)
         return f"{one} ± {half}" if plain != written else f"{one} ({low} to {high})"

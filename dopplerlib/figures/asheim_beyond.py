@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
 from .._hints import Array, checked
-from ..evaluation.intervals import Estimate
+from ..evaluation.intervals import ConfidenceInterval
 from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, plain_log_ticks, styled
 
 
@@ -99,12 +99,12 @@ def consistency(
 
 
 @checked
-def reach(results: dict[str, dict[str, Estimate]]) -> Figure:
+def reach(results: dict[str, dict[str, ConfidenceInterval]]) -> Figure:
     """Draw usable ranges with their intervals, by experiment and tracker.
 
     Parameters
     ----------
-    results : dict of str to dict of str to Estimate
+    results : dict of str to dict of str to ConfidenceInterval
         For each experiment, the usable range of each tracker in m; infinite values are drawn at
         the edge.
     """
@@ -130,14 +130,14 @@ def reach(results: dict[str, dict[str, Estimate]]) -> Figure:
 
 
 @checked
-def sweep(values: Array, errors: dict[str, Sequence[Estimate]], xlabel: str) -> Figure:
+def sweep(values: Array, errors: dict[str, Sequence[ConfidenceInterval]], xlabel: str) -> Figure:
     """Draw the error of several trackers over a setting: a delay, a baseline.
 
     Parameters
     ----------
     values : array_like, shape (M,)
         Values of the setting.
-    errors : dict of str to list of Estimate
+    errors : dict of str to list of ConfidenceInterval
         Root mean square errors in m by label, one for each value.
     xlabel : str
         Name and unit of the setting.

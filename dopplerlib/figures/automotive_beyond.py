@@ -122,7 +122,7 @@ def crossings(truth, estimates, shares, angles):
         True states.
     estimates : ndarray, shape (2, K, 4)
         Estimates of one run.
-    shares : dict of str to list of Estimate
+    shares : dict of str to list of ConfidenceInterval
         For each label, the share of the runs at each angle.
     angles : sequence of float
         In degrees.

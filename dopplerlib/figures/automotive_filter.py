@@ -123,7 +123,7 @@ def lags(w, predicted, noise, measured):
         Predicted lag of position in m and speed in m/s.
     noise : ndarray, shape (M, 2)
         Predicted deviation by noise.
-    measured : dict of float to tuple of two Estimate
+    measured : dict of float to tuple of two ConfidenceInterval
         For some w, the mean error of position and speed in many runs.
 
     Returns

@@ -53,7 +53,7 @@ def budget(rows, moments):
 
     Parameters
     ----------
-    rows : sequence of tuple (str, list of Estimate, list of float)
+    rows : sequence of tuple (str, list of ConfidenceInterval, list of float)
         Name, the median with its interval in m for each moment, and the quantile of 90 % there. An
         empty name leaves a gap.
     moments : sequence of float
@@ -91,7 +91,7 @@ def wrong_time(time, nis, nees, labels):
     ----------
     time : ndarray, shape (K,)
         Time in s.
-    nis, nees : sequence of list of Estimate
+    nis, nees : sequence of list of ConfidenceInterval
         Averages over runs, one list of K for each label.
     labels : sequence of str
         What the times are.
@@ -129,7 +129,7 @@ def starts(lengths, errors, shares, limit):
         Time until the start in s.
     errors : dict of str to list of ndarray, shape (runs,)
         Position errors in m, for each length.
-    shares : dict of str to list of Estimate
+    shares : dict of str to list of ConfidenceInterval
         Shares of runs whose error is above `limit`.
     limit : float
         In m.
@@ -173,7 +173,7 @@ def achievable(levels, medians, bounds):
     ----------
     levels : sequence of float
         Power of the echo over the noise in 1 Hz, in dB.
-    medians : sequence of Estimate
+    medians : sequence of ConfidenceInterval
         Median errors in m with their intervals, for each level.
     bounds : dict of str to sequence of float
         Medians in m that each bound would allow, for each level; two bounds at most.

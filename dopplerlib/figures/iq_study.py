@@ -124,7 +124,7 @@ def best_window(T, errors, laws, limit):
     ----------
     T : ndarray, shape (M,)
         Lengths in s.
-    errors : dict of str to list of Estimate, length M
+    errors : dict of str to list of ConfidenceInterval, length M
         Measured root-mean-square errors in Hz, by tag.
     laws : dict of str to tuple (ndarray, shape (L,), ndarray, shape (L,), float)
         For each tag lengths in s, predicted errors in Hz, and the best length in s.
@@ -164,7 +164,7 @@ def overlap(tau, law, lag, measured):
         Distance of the windows over their length, and the closed form.
     lag : ndarray, shape (L,)
         Distances at which it was measured.
-    measured : list of Estimate, length L
+    measured : list of ConfidenceInterval, length L
         The results.
 
     Returns
@@ -191,9 +191,9 @@ def colored(lag, autocorrelation, belief):
     ----------
     lag : ndarray, shape (L,)
         Lags in steps.
-    autocorrelation : dict of str to list of Estimate, length L
+    autocorrelation : dict of str to list of ConfidenceInterval, length L
         Of the innovations, by label.
-    belief : dict of str to tuple (Estimate, Estimate)
+    belief : dict of str to tuple (ConfidenceInterval, ConfidenceInterval)
         For the same labels, mean NIS and mean NEES.
 
     Returns

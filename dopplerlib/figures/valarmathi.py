@@ -210,7 +210,7 @@ def failures(shares, failed_share):
 
     Parameters
     ----------
-    shares : dict of (str, int) to tuple of (ndarray, sequence of Estimate)
+    shares : dict of (str, int) to tuple of (ndarray, sequence of ConfidenceInterval)
         By path and algorithm, as `failed_shares` returns it.
     failed_share : float
         Share from which an algorithm has failed.

@@ -21,7 +21,7 @@ def fisher_information(
     sigma_f: ArrayLike,
     K: int = 1,
     T: float = 0.001,
-    likelihood: Literal["static", "moving"] = "static",
+    likelihood: Literal["stationary", "constant_velocity"] = "stationary",
 ) -> FloatArray:
     """Return the Fisher information of K Doppler samples about the state at the first of them.
 
@@ -37,9 +37,9 @@ def fisher_information(
         Number of samples.
     T : float
         Sampling interval in s; without effect if the state is constant.
-    likelihood : {"static", "moving"}
-        "static": the state is the same at all samples, Eq 10 as printed. "moving": the target
-        moves at constant velocity, so sample k sees the state F^k x.
+    likelihood : {"stationary", "constant_velocity"}
+        "stationary": the state is the same at all samples, Eq 10 as printed. "constant_velocity":
+        the target moves at constant velocity, so sample k sees the state F^k x.
 
     Returns
     -------
@@ -70,7 +70,10 @@ def fisher_information(
     _checks.instance("array", array, RadarArray)
     K = _checks.whole_number("K", K)
     T = _checks.moderate_number("T", T)
-    moving = _checks.one_of("likelihood", likelihood, ("static", "moving")) == "moving"
+    moving = (
+        _checks.one_of("likelihood", likelihood, ("stationary", "constant_velocity"))
+        == "constant_velocity"
+    )
     weight = 1 / _checks.each_run(
         "sigma_f", _checks.deviation("sigma_f", sigma_f), (K, len(array)), ()
     )

@@ -1,5 +1,10 @@
-"""How a target moves between two samples."""
+"""Motion of a target: transition matrices and process noise, in any number of dimensions.
 
+Nearly constant velocity (ncv) and acceleration (nca), driven by discrete white noise acceleration
+(dwna: constant during an interval) or by white noise in continuous time (cwna, cwnj).
+"""
+
+from math import factorial
 from typing import Literal
 
 import numpy as np
@@ -7,13 +12,14 @@ import numpy as np
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
 
+ORDERS = ("axis", "derivative")
 # The axes that each acceleration drives.
-_AXES = {"common": np.ones((3, 1)), "independent": np.eye(3)}
+_AXES = {"shared": np.ones((3, 1)), "per_axis": np.eye(3)}
 
 
 @_checks.quiet
 def constant_velocity(
-    T: ArrayLike, sigma_p: float, noise: Literal["common", "independent"] = "common"
+    T: ArrayLike, sigma_a: float, noise: Literal["shared", "per_axis"] = "shared"
 ) -> tuple[FloatArray, FloatArray]:
     """Return the transition matrix and process-noise covariance of the constant-velocity model.
 
@@ -21,11 +27,11 @@ def constant_velocity(
     ----------
     T : array_like, shape (...)
         Sampling intervals in s.
-    sigma_p : float
+    sigma_a : float
         Standard deviation of the acceleration, constant during one interval, in m/s^2.
-    noise : {"common", "independent"}
-        "common": one scalar acceleration drives all three axes at once, along (1, 1, 1); Q has
-        rank one. This is Eq 17 as printed. "independent": each axis has an acceleration of its
+    noise : {"shared", "per_axis"}
+        "shared": one scalar acceleration drives all three axes at once, along (1, 1, 1); Q has
+        rank one. This is Eq 17 as printed. "per_axis": each axis has an acceleration of its
         own; Q has rank three.
 
     Returns
@@ -38,7 +44,7 @@ def constant_velocity(
     Raises
     ------
     ValueError
-        If `T` or `sigma_p` is not finite and positive, or `noise` is not one of the two.
+        If `T` or `sigma_a` is not finite and positive, or `noise` is not one of the two.
 
     Notes
     -----
@@ -47,29 +53,248 @@ def constant_velocity(
     Examples
     --------
     >>> F, Q = constant_velocity(0.001, 0.4)
-    >>> _, Q3 = constant_velocity(0.001, 0.4, noise="independent")
+    >>> _, Q3 = constant_velocity(0.001, 0.4, noise="per_axis")
     >>> int(np.linalg.matrix_rank(Q)), int(np.linalg.matrix_rank(Q3))
     (1, 3)
     """
     T = _checks.deviation("T", T)
-    G, sigma_p = acceleration_gain(T, sigma_p, noise)
+    G, sigma_a = dwna_gain(T, sigma_a, noise)
     F = np.eye(6) + T[..., None, None] * np.eye(6, k=3)
-    return F, sigma_p**2 * (G @ np.swapaxes(G, -1, -2))
+    return F, sigma_a**2 * (G @ np.swapaxes(G, -1, -2))
 
 
-def acceleration_gain(
-    T: FloatArray, sigma_p: float, noise: Literal["common", "independent"]
+def dwna_gain(
+    T: FloatArray, sigma_a: float, noise: Literal["shared", "per_axis"]
 ) -> tuple[FloatArray, float]:
-    """Return G of shape (..., 6, 1) or (..., 6, 3), and sigma_p as a float (Eq 9).
+    """Return G of shape (..., 6, 1) or (..., 6, 3), and sigma_a as a float (Eq 9).
 
-    Raises ValueError unless sigma_p and noise are those of `constant_velocity`, and sigma_p^2 G G',
+    Raises ValueError unless sigma_a and noise are those of `constant_velocity`, and sigma_a^2 G G',
     which is Q, is finite. `T` itself is unchecked.
     """
-    sigma_p = _checks.one_number("sigma_p", sigma_p, _checks.deviation)
+    sigma_a = _checks.one_number("sigma_a", sigma_a, _checks.deviation)
     axes = _AXES[_checks.one_of("noise", noise, tuple(_AXES))]
     interval = T[..., None, None]
     G = np.concatenate([interval * interval / 2 * axes, interval * axes], axis=-2)
     largest = float(G.max(initial=0.0))
-    if not sigma_p * sigma_p * (largest * largest) < np.inf:
-        raise ValueError(f"T must give a finite Q with sigma_p = {sigma_p}, got {T.max()}")
-    return G, sigma_p
+    if not sigma_a * sigma_a * (largest * largest) < np.inf:
+        raise ValueError(f"T must give a finite Q with sigma_a = {sigma_a}, got {T.max()}")
+    return G, sigma_a
+
+
+def ncv_transition(
+    T: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
+    """Return the transition matrix of constant velocity.
+
+    Parameters
+    ----------
+    T : float
+        Sampling interval in s; zero for two measurements at one time, which gives the identity.
+    dim : int
+        Number of axes.
+    order : {"axis", "derivative"}
+        Order of the state. "axis": [x, v_x, y, v_y, ...]; "derivative": [x, y, ..., v_x, v_y, ...].
+
+    Returns
+    -------
+    ndarray, shape (2 dim, 2 dim)
+
+    Raises
+    ------
+    ValueError
+        If `T` is negative or beyond 1e60, `dim` is not positive, or `order` is not one of the two.
+
+    Notes
+    -----
+    Bar-Shalom, Li, Kirubarajan (2001), Sec 6.2.2. "Nearly constant" becomes true with the process
+    noise of `cwna_process_noise`.
+
+    Examples
+    --------
+    >>> ncv_transition(0.5, dim=2)[:2].tolist()
+    [[1.0, 0.5, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]]
+    >>> ncv_transition(0.5, dim=2, order="derivative")[0].tolist()
+    [1.0, 0.0, 0.5, 0.0]
+    """
+    return _all_axes(_integrators(_interval(T), 2), dim, order)
+
+
+def nca_transition(
+    T: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
+    """Return the transition matrix of constant acceleration.
+
+    Parameters
+    ----------
+    T : float
+        Sampling interval in s; zero for two measurements at one time, which gives the identity.
+    dim : int
+        Number of axes.
+    order : {"axis", "derivative"}
+        Order of the state. "axis": [x, v_x, a_x, y, ...]; "derivative": [x, y, ..., a_x, a_y, ...].
+
+    Returns
+    -------
+    ndarray, shape (3 dim, 3 dim)
+
+    Raises
+    ------
+    ValueError
+        If `T` is negative or beyond 1e60, `dim` is not positive, or `order` is not one of the two.
+
+    Notes
+    -----
+    Bar-Shalom, Li, Kirubarajan (2001), Sec 6.2.3.
+
+    Examples
+    --------
+    >>> nca_transition(2.0, dim=1).tolist()
+    [[1.0, 2.0, 2.0], [0.0, 1.0, 2.0], [0.0, 0.0, 1.0]]
+    """
+    return _all_axes(_integrators(_interval(T), 3), dim, order)
+
+
+def cwna_process_noise(
+    T: float, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
+    """Return the process noise of white-noise acceleration over one interval.
+
+    Parameters
+    ----------
+    T : float
+        Sampling interval in s; over none there is no noise.
+    q : float
+        Spectral density of the acceleration in m^2/s^3: over a second the velocity wanders by
+        sqrt(q) m/s, whatever the sampling interval.
+    dim, order
+        See `ncv_transition`.
+
+    Returns
+    -------
+    ndarray, shape (2 dim, 2 dim)
+
+    Raises
+    ------
+    ValueError
+        If `T` is negative or beyond 1e60, `q` or `dim` is not positive, or `order` is not one of
+        the two.
+
+    Notes
+    -----
+    Bar-Shalom, Li, Kirubarajan (2001), Eq 6.2.2-12.
+
+    Examples
+    --------
+    >>> cwna_process_noise(3.0, 2.0, dim=1).tolist()
+    [[18.0, 9.0], [9.0, 6.0]]
+    """
+    return _white_noise(T, q, 2, dim, order)
+
+
+def cwnj_process_noise(
+    T: float, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
+    """Return the process noise of white-noise jerk over one interval.
+
+    Parameters
+    ----------
+    T : float
+        Sampling interval in s; over none there is no noise.
+    q : float
+        Spectral density of the jerk in m^2/s^5.
+    dim, order
+        See `nca_transition`.
+
+    Returns
+    -------
+    ndarray, shape (3 dim, 3 dim)
+
+    Raises
+    ------
+    ValueError
+        If `T` is negative or beyond 1e60, `q` or `dim` is not positive, or `order` is not one of
+        the two.
+
+    Notes
+    -----
+    Bar-Shalom, Li, Kirubarajan (2001), Eq 6.2.3-9.
+
+    Examples
+    --------
+    >>> cwnj_process_noise(1.0, 60.0, dim=1).tolist()
+    [[3.0, 7.5, 10.0], [7.5, 20.0, 30.0], [10.0, 30.0, 60.0]]
+    """
+    return _white_noise(T, q, 3, dim, order)
+
+
+def velocity_step_noise(
+    w: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+) -> FloatArray:
+    """Return a process noise that acts on the velocities alone, once a step.
+
+    Parameters
+    ----------
+    w : float
+        Standard deviation of the velocity step in m/s.
+    dim, order
+        See `ncv_transition`.
+
+    Returns
+    -------
+    ndarray, shape (2 dim, 2 dim)
+        Diagonal, of rank `dim`.
+
+    Raises
+    ------
+    ValueError
+        If `w` or `dim` is not positive, or `order` is not one of the two.
+
+    Notes
+    -----
+    Macaveiu et al. (2013), Eq 3. It belongs to one sampling interval: with another one, the same
+    `w` stands for another target.
+
+    Examples
+    --------
+    >>> np.diag(velocity_step_noise(0.5, dim=2)).tolist()
+    [0.0, 0.25, 0.0, 0.25]
+    """
+    w = _checks.one_number("w", w, _checks.deviation)
+    return _all_axes(np.diag([0.0, w * w]), dim, order)
+
+
+def _interval(T):
+    T = _checks.one_number("T", T, _checks.moderate)
+    if T < 0:
+        raise ValueError(f"T must not be negative, got {T}")
+    return T
+
+
+def _integrators(T, n):
+    """Return the transition of `n` integrators in a row: T^(j - i) / (j - i)!."""
+    F = np.eye(n)
+    for i in range(n):
+        for j in range(i + 1, n):
+            F[i, j] = T ** (j - i) / factorial(j - i)
+    return F
+
+
+def _white_noise(T, q, n, dim, order):
+    """Return the covariance that white noise of density `q` leaves behind `n` integrators."""
+    T = _interval(T)
+    q = _checks.positive_number("q", q)
+    Q = np.empty((n, n))
+    for i in range(n):
+        for j in range(n):
+            # The product of T^a / a! and T^b / b!, integrated over the interval.
+            a, b = n - 1 - i, n - 1 - j
+            Q[i, j] = q * T ** (a + b + 1) / ((a + b + 1) * factorial(a) * factorial(b))
+    _checks.estimates("T, q", Q, what="process noise")
+    return _all_axes(Q, dim, order)
+
+
+def _all_axes(block, dim, order):
+    dim = _checks.count("dim", dim, 1000)
+    if _checks.one_of("order", order, ORDERS) == "axis":
+        return np.kron(np.eye(dim), block)
+    return np.kron(block, np.eye(dim))

@@ -78,7 +78,7 @@ def fourth_power_snr(d: ArrayLike, at_one: float) -> FloatArray:
     return _checks.one_number("at_one", at_one) - 40 * np.log10(_checks.positive("d", d))
 
 
-def resolution_deviation(resolution: float, snr_db: ArrayLike) -> FloatArray:
+def range_std(resolution: float, snr_db: ArrayLike) -> FloatArray:
     """Return the standard deviation of a measurement that resolves `resolution`.
 
     Parameters
@@ -106,7 +106,7 @@ def resolution_deviation(resolution: float, snr_db: ArrayLike) -> FloatArray:
 
     Examples
     --------
-    >>> float(resolution_deviation(0.15, 20.0).round(4))
+    >>> float(range_std(0.15, 20.0).round(4))
     0.0106
     """
     resolution = _checks.moderate_number("resolution", resolution)

@@ -15,7 +15,7 @@ _SHAPES = {"ring": RadarArray.ring, "linear": RadarArray.linear, "positions": Ra
 _ENTRIES = {
     "target": ("x0",),
     "sampling": ("T", "samples", "sigma_f"),
-    "tracker": ("sigma_p", "P0_diagonal"),
+    "tracker": ("sigma_a", "P0_diagonal"),
 }
 
 
@@ -35,7 +35,7 @@ class Scenario:
         Number of samples K.
     sigma_f : float
         Standard deviation of a Doppler measurement in Hz.
-    sigma_p : float
+    sigma_a : float
         Standard deviation of the acceleration that the tracker assumes, in m/s^2.
     P0 : array_like, shape (6, 6)
         Covariance with which the tracker starts.
@@ -52,7 +52,7 @@ class Scenario:
 
     >>> scenario = Scenario(
     ...     RadarArray.ring(6, 0.2), x0=[0.8, 0, 0, -0.7, 0, 0],
-    ...     T=0.001, samples=1001, sigma_f=0.4, sigma_p=0.4, P0=0.1 * np.eye(6),
+    ...     T=0.001, samples=1001, sigma_f=0.4, sigma_a=0.4, P0=0.1 * np.eye(6),
     ... )
     >>> round(float(scenario.time[-1]), 3), round(float(scenario.truth[-1, 0]), 3)
     (1.0, 0.1)
@@ -63,7 +63,7 @@ class Scenario:
     T: float
     samples: int
     sigma_f: float
-    sigma_p: float
+    sigma_a: float
     P0: np.ndarray
 
     if TYPE_CHECKING:  # what a field holds is an array, what makes it need not be
@@ -75,7 +75,7 @@ class Scenario:
             T: float,
             samples: int,
             sigma_f: float,
-            sigma_p: float,
+            sigma_a: float,
             P0: ArrayLike,
         ) -> None: ...
 
@@ -91,7 +91,7 @@ class Scenario:
         object.__setattr__(self, "x0", x0)
         object.__setattr__(self, "P0", P0)
         object.__setattr__(self, "samples", _checks.whole_number("samples", self.samples))
-        for name in ("T", "sigma_f", "sigma_p"):
+        for name in ("T", "sigma_f", "sigma_a"):
             object.__setattr__(self, name, _checks.moderate_number(name, getattr(self, name)))
 
     @property
@@ -147,7 +147,7 @@ def _fields(tables):
         "array": _array(tables["array"]),
         "x0": tables["target"]["x0"],
         **sampling,
-        "sigma_p": tracker["sigma_p"],
+        "sigma_a": tracker["sigma_a"],
         "P0": np.diag(_checks.positive("P0_diagonal", tracker["P0_diagonal"], (6,))),
     }
 

@@ -46,7 +46,7 @@ def simulate(
     >>> from dopplerlib import RadarArray, Scenario
     >>> scenario = Scenario(
     ...     RadarArray.ring(6, 0.2), x0=[0.8, 0.1, 0.1, -0.7, 0, 0],
-    ...     T=0.001, samples=100, sigma_f=0.4, sigma_p=0.4, P0=0.1 * np.eye(6),
+    ...     T=0.001, samples=100, sigma_f=0.4, sigma_a=0.4, P0=0.1 * np.eye(6),
     ... )
     >>> truth, z = simulate(scenario, 5, rng=np.random.default_rng(1))
     >>> truth.shape, z.shape

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from ..evaluation.intervals import mean_interval, quantile_interval, share_interval
+from ..evaluation.intervals import mean_interval, proportion_interval, quantile_interval
 
 _INTERVALS = {"median": quantile_interval, "mean": mean_interval}
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -59,7 +59,7 @@ class IntervalTable:
 
     def _cell(self, values):
         interval = _INTERVALS[self.statistic]
-        estimate = (share_interval if np.asarray(values).dtype == bool else interval)(values)
+        estimate = (proportion_interval if np.asarray(values).dtype == bool else interval)(values)
         return f"{_short(estimate.value)}<br>({_short(estimate.low)} to {_short(estimate.high)})"
 
 

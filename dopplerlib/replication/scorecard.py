@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import _checks
 from .._records import record
-from ..evaluation.intervals import Estimate
+from ..evaluation.intervals import ConfidenceInterval
 from .claims import VERDICTS
 from .verdicts import Judgment
 
@@ -81,6 +81,6 @@ def _row(judgment):
 
 
 def _number(value):
-    if isinstance(value, Estimate):
+    if isinstance(value, ConfidenceInterval):
         return f"{value.value:.3g}" if value.low == value.high else str(value)
     return ", ".join(f"{one:.4g}" for one in np.atleast_1d(value))

@@ -9,7 +9,7 @@ import numpy as np
 from .. import _checks
 from .._records import record
 from .._typing import ArrayLike
-from ..evaluation.intervals import Estimate, share_interval
+from ..evaluation.intervals import ConfidenceInterval, proportion_interval
 from .claims import Claim, check_claim
 
 # Share of our runs that a typical draw leaves on either side of it.
@@ -46,7 +46,7 @@ class Readings:
     Attributes
     ----------
     by_name : dict
-        A float, `Estimate` or `Draws` for each reading.
+        A float, `ConfidenceInterval` or `Draws` for each reading.
     """
 
     by_name: dict
@@ -62,11 +62,11 @@ class Judgment:
         The claim.
     verdict : str
         See `Claim`.
-    ours : Estimate or float or ndarray
+    ours : ConfidenceInterval or float or ndarray
         Our number; of a random run the median, with the interval in which 95 % of ours lie.
     published : float or tuple of float
         The number that it was compared with.
-    percentile : Estimate, optional
+    percentile : ConfidenceInterval, optional
         Share of our runs below the published one, in percent, with its Monte Carlo interval.
     reading : str, optional
         The reading that comes nearest.
@@ -76,9 +76,9 @@ class Judgment:
 
     claim: Claim
     verdict: str
-    ours: Estimate | float | np.ndarray
+    ours: ConfidenceInterval | float | np.ndarray
     published: float | tuple
-    percentile: Estimate | None = None
+    percentile: ConfidenceInterval | None = None
     reading: str | None = None
     decided: bool = True
 
@@ -90,10 +90,10 @@ def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
     ----------
     claim : Claim
         What is claimed.
-    evidence : float, array_like, Estimate, Draws or Readings
-        Our number for a deterministic claim (as many as are published); an `Estimate`, or a float
-        without uncertainty, for a relation; `Draws` for a random run. `Readings` holds one of
-        these for each way to read the claim.
+    evidence : float, array_like, ConfidenceInterval, Draws or Readings
+        Our number for a deterministic claim (as many as are published); a `ConfidenceInterval`, or
+        a float without uncertainty, for a relation; `Draws` for a random run. `Readings` holds one
+        of these for each way to read the claim.
 
     Returns
     -------
@@ -133,13 +133,13 @@ def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
         return _judge_draw(claim, published, evidence)
     if claim.kind == "relation":
         if isinstance(evidence, (Readings, Draws)):
-            raise _wrong(claim, "an Estimate or a float", evidence)
-        if not isinstance(evidence, Estimate):
-            evidence = Estimate(*[_checks.one_number(_name(claim), evidence)] * 3)
+            raise _wrong(claim, "an ConfidenceInterval or a float", evidence)
+        if not isinstance(evidence, ConfidenceInterval):
+            evidence = ConfidenceInterval(*[_checks.one_number(_name(claim), evidence)] * 3)
         if not evidence.low <= evidence.value <= evidence.high:  # as it is not if one is NaN
-            raise _wrong(claim, "an Estimate whose value lies between its ends", evidence)
+            raise _wrong(claim, "an ConfidenceInterval whose value lies between its ends", evidence)
         return _judge_relation(claim, published, evidence)
-    if isinstance(evidence, (Estimate, Draws)):
+    if isinstance(evidence, (ConfidenceInterval, Draws)):
         raise _wrong(claim, "a number", evidence)
     ours = _checks.finite(_name(claim), evidence)
     if np.shape(published) != ours.shape:
@@ -200,17 +200,17 @@ def _judge_draw(claim, published, draws):
     if values.ndim != 1 or not len(values):
         raise _wrong(claim, "Draws with a number from each run", draws)
     # What is printed as 5.82 may be anything from 5.815 to 5.825.
-    below = share_interval(values <= published + claim.rounding, 0.999)
-    above = share_interval(values >= published - claim.rounding, 0.999)
+    below = proportion_interval(values <= published + claim.rounding, 0.999)
+    above = proportion_interval(values >= published - claim.rounding, 0.999)
     tail = min(below, above, key=lambda share: share.value)
     low, middle, high = np.quantile(values, [_TAIL, 0.5, 1 - _TAIL])
-    share = share_interval(values < published)
+    share = proportion_interval(values < published)
     return Judgment(
         claim,
         "typical" if tail.value >= _TAIL else "atypical",
-        Estimate(float(middle), float(low), float(high)),
+        ConfidenceInterval(float(middle), float(low), float(high)),
         published,
-        percentile=Estimate(100 * share.value, 100 * share.low, 100 * share.high),
+        percentile=ConfidenceInterval(100 * share.value, 100 * share.low, 100 * share.high),
         decided=not tail.low < _TAIL < tail.high,
     )
 
@@ -251,7 +251,7 @@ def _judge_readings(claim, readings):
 
 
 def _distance(judgment):
-    ours = judgment.ours.value if isinstance(judgment.ours, Estimate) else judgment.ours
+    ours = judgment.ours.value if isinstance(judgment.ours, ConfidenceInterval) else judgment.ours
     return float(np.max(np.abs(np.subtract(ours, judgment.published))))
 
 

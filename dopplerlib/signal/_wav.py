@@ -137,7 +137,7 @@ def read_wav(
     echo and a Q that is only noise are refused, too: ``layout="iq"`` reads them.
 
     If I and Q are exchanged, all Doppler shifts have the wrong sign, which the samples do not tell;
-    the fit of `ml_start` does.
+    the fit of `ml_initialize` does.
 
     Examples
     --------

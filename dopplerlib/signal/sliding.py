@@ -43,7 +43,7 @@ class DopplerRecord:
         Samples from one window to the next.
     fs : float
         Sampling rate in Hz.
-    beside_constant : bool
+    dc_fitted : bool
         Whether the windows hold a constant that was estimated together with the tone.
 
     Raises
@@ -59,7 +59,7 @@ class DopplerRecord:
     window: int
     hop: int
     fs: float
-    beside_constant: bool = False
+    dc_fitted: bool = False
 
     def __post_init__(self):
         frequency = _checks.measured("frequency", self.frequency, (None, None))
@@ -81,7 +81,7 @@ class DopplerRecord:
             ("window", _checks.count("window", self.window, _MOST, 3)),
             ("hop", _checks.whole_number("hop", self.hop)),
             ("fs", _checks.moderate_number("fs", self.fs)),
-            ("beside_constant", _checks.one_boolean("beside_constant", self.beside_constant)),
+            ("dc_fitted", _checks.one_boolean("dc_fitted", self.dc_fitted)),
         ):
             object.__setattr__(self, name, value)
         if self.time.ndim != 1:
@@ -95,7 +95,7 @@ class DopplerRecord:
         off, and so is what the mean of 1 / noise_variance is too large. Noise alone may leave it
         negative. It is 0 where `frequency` is NaN, and infinite where there is no noise.
         """
-        n, unknowns = self.window, 5 if self.beside_constant else 3
+        n, unknowns = self.window, 5 if self.dc_fitted else 3
         # The noise variance is chi-square distributed, with 2 n - unknowns degrees of freedom.
         dof = n - unknowns / 2
         size = np.where(np.isnan(self.frequency), 1.0, self._size())
@@ -116,7 +116,7 @@ class DopplerRecord:
         snr = self.snr
         usual = (snr > 0) & np.isfinite(snr)
         some, f = np.where(usual, snr, 1.0), np.where(usual, self.frequency, 0.0)
-        if self.beside_constant:
+        if self.dc_fitted:
             bound = crlb_frequency_std_dc(f, some, self.window, self.fs)
         else:
             bound = crlb_frequency_std(some, self.window, self.fs)
@@ -124,7 +124,7 @@ class DopplerRecord:
         return np.where(snr > 0, np.maximum(np.where(usual, bound, 0.0), finest), np.inf)
 
     def measurements(self) -> tuple[FloatArray, FloatArray]:
-        """Return frequencies and their deviations as `ekf` and `ml_start` take them.
+        """Return frequencies and their deviations as `ekf` and `ml_initialize` take them.
 
         Returns
         -------
@@ -149,7 +149,7 @@ class DopplerRecord:
     def _size(self):
         """Return what a tone of amplitude 1 leaves of the n samples' energy beside a constant."""
         n = self.window
-        if not self.beside_constant:
+        if not self.dc_fitted:
             return n
         with np.errstate(all="ignore"):
             return n - sum_of_ones(self.frequency * n / self.fs, n)[0] ** 2 / n
@@ -163,7 +163,7 @@ def sliding_doppler(
     estimator: Callable[..., Any] = ml_frequency,
     *,
     band: Sequence[float] | None = None,
-    tag: Literal["center", "end", "start"] = "center",
+    timestamp: Literal["center", "end", "start"] = "center",
     valid: ArrayLike | None = None,
 ) -> DopplerRecord:
     """Return the Doppler shifts in windows that slide over IQ samples.
@@ -185,9 +185,9 @@ def sliding_doppler(
         every other one those of a tone alone, for which a constant is noise.
     band : tuple of float, optional
         Lowest and highest frequency in Hz; -fs/2 and fs/2 if None.
-    tag : {"center", "end", "start"}
+    timestamp : {"center", "end", "start"}
         Which moment of the window its time is. The frequency of a window is that at its center:
-        with another tag, it is late or early by half the window.
+        with another timestamp, it is late or early by half the window.
 
     valid : array_like of bool, broadcast to (..., S, n), optional
         Which samples are measurements, see `valid_samples`; all if None. A window that touches
@@ -201,7 +201,7 @@ def sliding_doppler(
     ------
     ValueError
         If a valid sample is not finite or beyond 1e140, `window` does not fit into the record or is
-        less than 3 (4 with `ml_frequency_dc`), a number is not positive, `tag` is none of the
+        less than 3 (4 with `ml_frequency_dc`), a number is not positive, `timestamp` is none of the
         three, or `estimator` is no function or refuses its arguments.
 
     Notes
@@ -225,7 +225,7 @@ def sliding_doppler(
     constant = _checks.function("estimator", estimator) is ml_frequency_dc
     window = _checks.whole_number("window", window, least=4 if constant else 3)
     hop = _checks.whole_number("hop", hop)
-    part = _TAGS[_checks.one_of("tag", tag, tuple(_TAGS))]
+    part = _TAGS[_checks.one_of("timestamp", timestamp, tuple(_TAGS))]
     n = x.shape[-1]
     if window > n:
         raise ValueError(f"window must be at most the {n} samples of the record, got {window}")

@@ -7,7 +7,7 @@ from .._typing import ArrayLike, BoolArray
 
 
 @_checks.quiet
-def chi2_gate(nis: ArrayLike, m: int, probability: float) -> BoolArray:
+def chi2_gate(nis: ArrayLike, m: int, gate_probability: float) -> BoolArray:
     """Return where a measurement is inside the gate of this probability.
 
     Parameters
@@ -16,7 +16,7 @@ def chi2_gate(nis: ArrayLike, m: int, probability: float) -> BoolArray:
         Normalized innovation squared; NaN where nothing was measured.
     m : int
         Number of components of the measurement.
-    probability : float
+    gate_probability : float
         Probability with which the measurement of the target itself is inside.
 
     Returns
@@ -27,8 +27,8 @@ def chi2_gate(nis: ArrayLike, m: int, probability: float) -> BoolArray:
     Raises
     ------
     ValueError
-        If `nis` is not made of real numbers, `m` is not a positive whole number, or `probability`
-        is not between 0 and 1.
+        If `nis` is not made of real numbers, `m` is not a positive whole number, or
+        `gate_probability` is not between 0 and 1.
 
     Notes
     -----
@@ -37,14 +37,14 @@ def chi2_gate(nis: ArrayLike, m: int, probability: float) -> BoolArray:
 
     Examples
     --------
-    >>> chi2_gate([5.9, 6.0, np.nan], m=2, probability=0.95).tolist()
+    >>> chi2_gate([5.9, 6.0, np.nan], m=2, gate_probability=0.95).tolist()
     [True, False, False]
     """
     from scipy.special import chdtri  # here: it takes longer to load than all the rest
 
     nis = _checks.real("nis", nis)
     m = _checks.whole_number("m", m)
-    return nis <= chdtri(m, 1 - _checks.probability("probability", probability))
+    return nis <= chdtri(m, 1 - _checks.probability("gate_probability", gate_probability))
 
 
 @_checks.quiet

@@ -49,7 +49,7 @@ def track_scans(
     R: ArrayLike,
     start: Callable[..., Any],
     manager: TrackManager,
-    probability: float = 0.999,
+    gate_probability: float = 0.999,
     assign: Callable[..., Any] = gnn_assign,
     wrap: Iterable[int] = (),
     new: Callable[..., Any] | None = None,
@@ -71,7 +71,7 @@ def track_scans(
         Takes measurements (..., m), returns states (..., n) and covariances (..., n, n).
     manager : TrackManager
         Rules of confirmation and deletion.
-    probability : float
+    gate_probability : float
         Probability of the chi-square gate.
     assign : callable
         `gnn_assign` or `greedy_assign`: takes NIS of all pairs and the size of the gate.
@@ -92,7 +92,7 @@ def track_scans(
         If shapes do not fit, also those that `start`, `h`, `H`, `assign` and `new` return; a value
         is not finite, also of an estimate; `Q` or `R` is not a covariance, or `R` so small that the
         covariance of an innovation is singular to rounding; `manager` is no TrackManager; or
-        `probability` is not between 0 and 1.
+        `gate_probability` is not between 0 and 1.
 
     Notes
     -----
@@ -121,7 +121,7 @@ def track_scans(
     n = F.shape[0]
     F = _checks.matrix("F", F, (n, n))
     Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
-    size = chdtri(m, 1 - _checks.probability("probability", probability))
+    size = chdtri(m, 1 - _checks.probability("gate_probability", gate_probability))
     _checks.instance("manager", manager, TrackManager)
     wrap = _checks.components("wrap", wrap, m)
     for name, value in (("start", start), ("assign", assign), ("new", new)):

@@ -65,7 +65,7 @@ def test_the_score_is_the_likelihood_of_all_shifts(found):
             found.x[run, i, 0],
             found.P[run, i, 0],
             step,
-            found.sigma_p / np.sqrt(step),
+            found.velocity_random_walk / np.sqrt(step),
             found.shift_std[run, found.used :],
         )
         density = [
@@ -88,8 +88,10 @@ def test_a_missing_module_adds_nothing_to_the_score(found):
     six = filters(z, std, weights, S.array, *common)
     z5, std5, _ = rest
     other = filters(z5, std5, np.delete(weights, 4, axis=1), five, *common)
-    for name, a, b in zip(("x", "P", "nis", "memory", "score"), six, other, strict=True):
-        if name != "memory":  # says nothing where a module is missing
+    for name, a, b in zip(
+        ("x", "P", "nis", "lag1_autocorrelation", "score"), six, other, strict=True
+    ):
+        if name != "lag1_autocorrelation":  # says nothing where a module is missing
             assert_allclose(a, b, rtol=1e-6, atol=1e-9, err_msg=name)
 
 
@@ -101,7 +103,7 @@ def test_the_state_of_a_start_belongs_to_its_last_sample(used):
     one window earlier the target was 9.5 mm away.
     """
     iq = paper.received(1, rng=np.random.default_rng(92), snr_db=None, faults=False)
-    first = paper.track_iq(iq, hop=T, remove_dc=False, balance=False).known[0]
+    first = paper.track_iq(iq, hop=T, remove_dc=False, balance=False).available_at[0]
     start = first + (used - 1) * T + 24 * T
     f = paper.track_iq(iq, hop=T, start=start, remove_dc=False, balance=False)
     assert f.used == used + 24

@@ -25,7 +25,7 @@ README = Path(__file__).parents[2] / "README.md"
 PLACES = np.array([[0, 0.5, 1.0], [0, 1.5, 2.0], [0, 2.5, 1.0], [0, 3.5, 2.0], [0, 4.5, 1.0]])
 BOX = [0, 0, 1.2], [6, 5, 1.2]
 CARRIER, FS, LENGTH, RUNS = 10.525e9, 4000.0, 2.0, 20
-SETTINGS = {"speed_limit": 2.5, "sigma_p": 0.05, "window": 0.05, "start": 0.5}
+SETTINGS = {"speed_limit": 2.5, "velocity_random_walk": 0.05, "window": 0.05, "start": 0.5}
 
 
 def recorded(run):
@@ -102,7 +102,17 @@ def test_leading_axes_are_those_of_the_samples(room):
     iq, one, _ = room[0]
     two = replace(iq, x=iq.x[None, None], valid=iq.valid[None, None])
     many = track_iq(two, BOX, **SETTINGS)
-    for name in ("shift", "x", "P", "nis", "memory", "score", "degrees", "final_nis", "plausible"):
+    for name in (
+        "shift",
+        "x",
+        "P",
+        "nis",
+        "lag1_autocorrelation",
+        "score",
+        "degrees",
+        "final_nis",
+        "plausible",
+    ):
         a, b = getattr(one, name), getattr(many, name)
         assert_array_equal(a, b[0, 0], err_msg=name)
     for a, b in zip(one.at(1.5), many.at(1.5), strict=True):
@@ -117,7 +127,7 @@ def test_a_box_of_positions_is_that_of_all_velocities_within_the_limit(room):
 
 
 def test_a_hop_moves_what_the_velocity_may_wander_and_not_the_belief(room):
-    """With a missing target the velocity's variance grows by sigma_p^2 t, whatever the hop."""
+    """With a missing target the velocity's variance grows with time, whatever the hop."""
     iq, *_ = room[0]
     k = round((1.0 - iq.first) * iq.fs)
     lost = np.arange(iq.x.shape[-1]) < k
@@ -145,7 +155,9 @@ def test_there_is_a_hypothesis_for_each_part_of_the_box(places, lower, upper, co
     array = RadarArray(places)
     x = complex_noise((2, 400), 1.0, rng=np.random.default_rng(102))
     iq = Baseband(x, 1e3, array)
-    f = track_iq(iq, (lower, upper), speed_limit=2, sigma_p=0.1, window=0.05, start=0.4)
+    f = track_iq(
+        iq, (lower, upper), speed_limit=2, velocity_random_walk=0.1, window=0.05, start=0.4
+    )
     assert f.x.shape[0] == (count if count > 1 else 2)
 
 
@@ -159,8 +171,8 @@ def test_noise_is_taken_for_a_target_as_often_as_the_formula_says():
     box = [0.1, 0, 0], [3, 2, 0]
     for least, tolerance in ((7.0, 0.2), (9.0, 0.4)):
         f = track_iq(
-            iq, box, speed_limit=top, sigma_p=1, window=n / fs, start=0.2, least_snr=least,
-            remove_dc=False, balance=False, search="whole",
+            iq, box, speed_limit=top, velocity_random_walk=1, window=n / fs, start=0.2,
+            least_snr=least, remove_dc=False, balance=False, search="whole",
         )  # fmt: skip
         s = least + 1.5
         expected = 1 + 0.8 * n * np.sqrt(np.pi * s / 3)
@@ -184,8 +196,11 @@ def test_what_makes_no_sense_is_refused_by_name(room):
         ({"box": BOX[::-1]}, r"box must not be empty, got \[6.*\] to \[0"),
         ({"box": BOX[:1]}, r"box must be a pair \(lower, upper\), got 1 bounds"),
         ({"speed_limit": 50}, r"speed_limit must be at most 7.12\d* m/s, .*, got 50"),
-        ({"sigma_p": 0}, "sigma_p must be positive, got 0"),
-        ({"sigma_p": 1e8}, "sigma_p must leave something of the noise .*, got 1e[+]08"),
+        ({"velocity_random_walk": 0}, "velocity_random_walk must be positive, got 0"),
+        (
+            {"velocity_random_walk": 1e8},
+            "velocity_random_walk must leave something of the noise .*, got 1e[+]08",
+        ),
         ({"window": 3.0}, "window must be at most the 1.98 s of the record, got 3"),
         ({"hop": 1e300}, "hop must lie between .*, got 1e[+]300"),
         ({"start": 0.1}, "start must hold at least two windows, got 1 in 0.1 s"),

@@ -41,7 +41,7 @@ def records(runs, samples, seed, array=RING):
     return doppler_shift(straight_path(samples), array) + SIGMA_F * noise
 
 
-def filtered(z, array=RING, x0=START, P0=P0, T=T, sigma_f=SIGMA_F, noise="independent", **more):
+def filtered(z, array=RING, x0=START, P0=P0, T=T, sigma_f=SIGMA_F, noise="per_axis", **more):
     return ekf(z, array, x0, P0, T, SIGMA_P, sigma_f, noise, **more)
 
 
@@ -67,7 +67,7 @@ def test_ekf_equals_kf_when_the_model_is_linear():
     array, H, x0 = one_axis()
     sigma_f = np.array([0.4, 0.7, 0.2])
     z = np.random.default_rng(1).normal(0.3 * H[:, 3], sigma_f, size=(5, 200, 3))
-    F, Q = constant_velocity(T, SIGMA_P, "independent")
+    F, Q = constant_velocity(T, SIGMA_P, "per_axis")
     track = filtered(z, array, x0, sigma_f=sigma_f)
     linear = kf(z, F, Q, H, np.diag(sigma_f**2), x0, P0)
     # The two share no formula (Joseph against sequential); 200 steps of rounding at relative
@@ -83,9 +83,9 @@ def test_ekf_equals_kf_when_the_model_is_linear():
 def test_ekf_equals_table_1_written_with_matrices():
     z = records(3, 150, seed=2)
     x, P = np.tile(START, (3, 1)), np.tile(P0, (3, 1, 1))
-    F, Q = constant_velocity(T, SIGMA_P, "common")
+    F, Q = constant_velocity(T, SIGMA_P, "shared")
     R = SIGMA_F**2 * np.eye(6)
-    track = filtered(z, noise="common")
+    track = filtered(z, noise="shared")
     for k in range(z.shape[1]):
         for run in range(3):
             x_k, P_k = F @ x[run], F @ P[run] @ F.T + Q
@@ -194,8 +194,8 @@ def test_sensor_missing_throughout_is_the_array_without_it():
 
 @pytest.mark.parametrize("gate", [None, "upper", "two-sided"])
 def test_nothing_measured_is_pure_prediction(gate):
-    F, Q = constant_velocity(T, SIGMA_P, "common")
-    track = filtered(np.full((40, 6), np.nan), noise="common", gate=gate)
+    F, Q = constant_velocity(T, SIGMA_P, "shared")
+    track = filtered(np.full((40, 6), np.nan), noise="shared", gate=gate)
     x, P = START, P0
     for k in range(40):
         x, P = F @ x, F @ P @ F.T + Q
@@ -268,7 +268,7 @@ def random_scene(seed, sensors):
     return array, start, intervals, path, z
 
 
-@pytest.mark.parametrize("noise", ["common", "independent"])
+@pytest.mark.parametrize("noise", ["shared", "per_axis"])
 @pytest.mark.parametrize("sensors", [1, 2, 5, 8])
 def test_each_step_is_that_of_the_linear_filter(sensors, noise):
     """`kf_predict` and `ekf_update` with matrices, from where the track was one sample before."""
@@ -302,14 +302,14 @@ def test_each_step_is_that_of_the_linear_filter(sensors, noise):
 def precise_ekf(z, array, x0, P0, intervals, noise):
     """Return states and covariances of Table 1 with sixty digits inside, P - k s k' by sensors."""
     precise = np.vectorize(lambda value: Decimal(float(value)), otypes=[object])
-    axes = np.ones((3, 1), int) if noise == "common" else np.eye(3, dtype=int)
+    axes = np.ones((3, 1), int) if noise == "shared" else np.eye(3, dtype=int)
     with localcontext(prec=60):
         x, P, positions = precise(x0), precise(P0), precise(array.positions)
-        g, sigma_p, r = map(Decimal, (array.doppler_per_speed, SIGMA_P, SIGMA_F**2))
+        g, sigma_a, r = map(Decimal, (array.doppler_per_speed, SIGMA_P, SIGMA_F**2))
         steps = []
         for z_k, interval in zip(z, precise(intervals), strict=True):
             F = np.eye(6, dtype=int) + interval * np.eye(6, k=3, dtype=int)
-            G = sigma_p * np.vstack([interval**2 / 2 * axes, interval * axes])
+            G = sigma_a * np.vstack([interval**2 / 2 * axes, interval * axes])
             x, P = F @ x, F @ P @ F.T + G @ G.T
             predicted = x
             for n in np.flatnonzero(np.isfinite(z_k)):
@@ -326,7 +326,7 @@ def precise_ekf(z, array, x0, P0, intervals, noise):
     return np.array(x, float), np.array(P, float)
 
 
-@pytest.mark.parametrize("noise", ["common", "independent"])
+@pytest.mark.parametrize("noise", ["shared", "per_axis"])
 @pytest.mark.parametrize("ratio", [1e0, 1e8, 1e16, 1e24])
 def test_a_vague_start_costs_no_digits(ratio, noise):
     """P0 = ratio R, in m^2 and (m/s)^2 beside Hz^2, and measurements without noise.
@@ -349,7 +349,7 @@ def test_a_vague_start_costs_no_digits(ratio, noise):
 
 
 @pytest.mark.parametrize("runs", [1, 16])
-@pytest.mark.parametrize("noise", ["common", "independent"])
+@pytest.mark.parametrize("noise", ["shared", "per_axis"])
 def test_covariances_are_symmetric_and_without_negative_variances(runs, noise):
     """From P0 / R of 1 to 1e30, in doubles of 16 digits, also where all sensors are in a plane."""
     z = np.tile(doppler_shift(straight_path(100), RING), (runs, 1, 1))
@@ -372,9 +372,9 @@ def test_what_is_known_exactly_stays_so_until_noise_drives_it():
     path = straight_path(30, flat)
     z = doppler_shift(path, array) + 0.1 * np.random.default_rng(24).standard_normal((30, 5))
     for covariance in (np.diag([1e-4, 1e-4, 0, 1e-2, 1e-2, 0]), np.zeros((6, 6))):
-        track = ekf(z, array, flat, covariance, T, 1e-3, 0.1, "independent")
+        track = ekf(z, array, flat, covariance, T, 1e-3, 0.1, "per_axis")
         # Nothing that is measured here tells of z: only the noise moves it, one axis by itself.
-        F, Q = constant_velocity(T, 1e-3, "independent")
+        F, Q = constant_velocity(T, 1e-3, "per_axis")
         P = covariance
         for k in range(30):
             P = F @ P @ F.T + Q
@@ -396,7 +396,7 @@ def test_a_singular_start_with_correlations_is_that_of_the_linear_filter():
     rank_one = np.outer(direction, direction)
     z = records(1, 1, seed=25)[0]
     track = filtered(z, P0=rank_one)
-    F, Q = constant_velocity(T, SIGMA_P, "independent")
+    F, Q = constant_velocity(T, SIGMA_P, "per_axis")
     x, P = kf_predict(START, rank_one, F, Q)
     x, P, _, _ = ekf_update(
         x, P, z[0], lambda x: doppler_shift(x, RING), lambda x: doppler_jacobian(x, RING),
@@ -424,7 +424,7 @@ def test_a_missing_sensor_right_at_the_target_does_no_harm():
 # ----------------------------------------------------------------------------- uneven times
 
 
-@pytest.mark.parametrize("noise", ["common", "independent"])
+@pytest.mark.parametrize("noise", ["shared", "per_axis"])
 def test_the_same_interval_given_for_each_sample_changes_no_bit(noise):
     z = records(2, 20, seed=20)
     assert_same_bits(filtered(z, T=np.full(20, T), noise=noise), filtered(z, noise=noise))
@@ -454,8 +454,8 @@ def test_a_lost_sample_is_a_longer_interval_up_to_its_noise(runs):
 def test_refused_measurement_leaves_the_prediction(gate):
     z = records(3, 60, seed=14)
     z[1, 30] += 50.0  # a hundred standard deviations
-    F, Q = constant_velocity(T, SIGMA_P, "independent")
-    track = filtered(z, gate=gate, confidence=0.999)
+    F, Q = constant_velocity(T, SIGMA_P, "per_axis")
+    track = filtered(z, gate=gate, gate_probability=0.999)
     lower, upper = gate_bounds(gate, 6, 0.999)
     inside = (lower[6] <= track.nis) & (track.nis <= upper[6])
     np.testing.assert_array_equal(track.updated, inside)
@@ -465,7 +465,9 @@ def test_refused_measurement_leaves_the_prediction(gate):
     np.testing.assert_allclose(track.P[1, 30], F @ track.P[1, 29] @ F.T + Q, rtol=1e-13)
     missing = z.copy()
     missing[1, 30] = np.nan
-    np.testing.assert_array_equal(track.x[1], filtered(missing, gate=gate, confidence=0.999).x[1])
+    np.testing.assert_array_equal(
+        track.x[1], filtered(missing, gate=gate, gate_probability=0.999).x[1]
+    )
     assert track.nis[1, 30] > upper[6]
     assert np.isfinite(track.innovation[1, 30]).all()
 
@@ -511,7 +513,7 @@ def test_gate_refuses_one_in_twenty_of_a_consistent_filter(gate):
     Exact binomial test: false-alarm probability 1e-6.
     """
     array, H, x0 = one_axis()
-    F, Q = constant_velocity(T, SIGMA_P, "independent")
+    F, Q = constant_velocity(T, SIGMA_P, "per_axis")
     rng = np.random.default_rng(15)
     runs = 20_000
     v_x = x0[3] + np.sqrt((F @ P0 @ F.T + Q)[3, 3]) * rng.standard_normal((runs, 1, 1))
@@ -542,9 +544,9 @@ def test_turning_target_and_ring_together_changes_nothing():
     np.testing.assert_allclose(turned.P, both @ track.P @ both.T, rtol=0, atol=1e-11)
     np.testing.assert_allclose(turned.nis, track.nis, rtol=1e-7)
     # The common noise points along (1, 1, 1): it does not turn with the rest.
-    common = filtered(z, noise="common").P
+    common = filtered(z, noise="shared").P
     turned = filtered(
-        np.roll(z, 1, axis=-1), x0=both @ START, P0=both @ P0 @ both.T, noise="common"
+        np.roll(z, 1, axis=-1), x0=both @ START, P0=both @ P0 @ both.T, noise="shared"
     ).P
     assert np.abs(turned - both @ common @ both.T).max() > 1e-7
 
@@ -582,7 +584,7 @@ def test_covariance_stays_symmetric_and_positive_definite_with_rank_one_noise():
     truth[:, 3:] = speed[:, None]
     rng = np.random.default_rng(18)
     z = doppler_shift(truth, RING) + SIGMA_F * rng.standard_normal((samples, 6))
-    track = filtered(z, x0=[0.6, 0.05, -0.05, 0.26, 0.26, 0.26], noise="common")
+    track = filtered(z, x0=[0.6, 0.05, -0.05, 0.26, 0.26, 0.26], noise="shared")
     np.testing.assert_array_equal(track.P, np.swapaxes(track.P, -1, -2))
     np.linalg.cholesky(track.P)  # would raise
     for P in track.P[::500]:
@@ -673,11 +675,11 @@ BAD = [
     ("T", [[T] * 4], "(1, 4)", "one number or have shape (K,) = (4,)"),
     ("T", [T, T, 0, T], "0.0 at index (2,)", "positive"),
     ("T", 1e300, "1e+300", "square"),
-    ("sigma_p", 0, "0.0", "positive"),
-    ("sigma_p", -0.4, "-0.4", "positive"),
-    ("sigma_p", np.inf, "inf", "finite"),
-    ("sigma_p", 1e200, "1e+200", "square"),
-    ("sigma_p", [0.4, 0.4], "(2,)", "one number"),
+    ("sigma_a", 0, "0.0", "positive"),
+    ("sigma_a", -0.4, "-0.4", "positive"),
+    ("sigma_a", np.inf, "inf", "finite"),
+    ("sigma_a", 1e200, "1e+200", "square"),
+    ("sigma_a", [0.4, 0.4], "(2,)", "one number"),
     ("sigma_f", 0, "0.0", "positive"),
     ("sigma_f", -0.4, "-0.4", "positive"),
     ("sigma_f", [0.4] * 5 + [-1], "-1.0 at index (5,)", "positive"),
@@ -688,18 +690,18 @@ BAD = [
     ("sigma_f", 1e-200, "1e-200", "square"),
     ("sigma_f", 1e200, "1e+200", "square"),
     ("sigma_f", 1j, "1j", "real numbers"),
-    ("noise", "white", "'white'", "one of 'common', 'independent'"),
-    ("noise", None, "None", "one of 'common', 'independent'"),
-    ("noise", np.array(["common", "common"]), "array", "one of 'common', 'independent'"),
+    ("noise", "white", "'white'", "one of 'shared', 'per_axis'"),
+    ("noise", None, "None", "one of 'shared', 'per_axis'"),
+    ("noise", np.array(["shared", "shared"]), "array", "one of 'shared', 'per_axis'"),
     ("gate", "lower", "'lower'", "one of None, 'upper', 'two-sided'"),
     ("gate", 0.95, "0.95", "one of None, 'upper', 'two-sided'"),
     ("gate", True, "True", "one of None, 'upper', 'two-sided'"),
-    ("confidence", 0, "0.0", "between 0 and 1"),
-    ("confidence", 1, "1.0", "between 0 and 1"),
-    ("confidence", -0.5, "-0.5", "between 0 and 1"),
-    ("confidence", 95, "95.0", "between 0 and 1"),
-    ("confidence", np.nan, "nan", "finite"),
-    ("confidence", [0.9, 0.95], "(2,)", "one number"),
+    ("gate_probability", 0, "0.0", "between 0 and 1"),
+    ("gate_probability", 1, "1.0", "between 0 and 1"),
+    ("gate_probability", -0.5, "-0.5", "between 0 and 1"),
+    ("gate_probability", 95, "95.0", "between 0 and 1"),
+    ("gate_probability", np.nan, "nan", "finite"),
+    ("gate_probability", [0.9, 0.95], "(2,)", "one number"),
     ("keep", "P", "'P'", "collection of 'P', 'innovation', 'S'"),
     ("keep", None, "None", "collection of 'P', 'innovation', 'S'"),
     ("keep", ("P", "x"), "'x'", "one of 'P', 'innovation', 'S'"),
@@ -715,7 +717,7 @@ BAD = [
 def test_bad_input_is_named(name, value, got, expected):
     arguments = {
         "z": np.zeros((2, 4, 6)), "array": RING, "x0": START, "P0": P0, "T": T,
-        "sigma_p": SIGMA_P, "sigma_f": SIGMA_F,
+        "sigma_a": SIGMA_P, "sigma_f": SIGMA_F,
     }  # fmt: skip
     with pytest.raises(ValueError, match=rf"^(F )?{name} must ") as raised:
         ekf(**arguments | {name: value})
@@ -730,7 +732,7 @@ def test_bad_input_is_named(name, value, got, expected):
         (("lower", 6), "gate must be one of"),
         (("upper", -1), "sensors must be a whole number of at least 0, got -1"),
         (("upper", 2.5), "sensors must be a whole number of at least 0, got 2.5"),
-        (("upper", 6, 1.0), "confidence must lie between 0 and 1, got 1.0"),
+        (("upper", 6, 1.0), "gate_probability must lie between 0 and 1, got 1.0"),
     ],
 )
 def test_bad_gate_is_named(arguments, message):

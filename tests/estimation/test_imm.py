@@ -6,11 +6,11 @@ from scipy.stats import multivariate_normal
 
 from dopplerlib import kf
 from dopplerlib.estimation.imm import imm
-from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 
 T, K = 0.5, 8
 F1 = ncv_transition(T, dim=1)
-Q1, Q2 = wna_process_noise(T, 0.01, dim=1), wna_process_noise(T, 4.0, dim=1)
+Q1, Q2 = cwna_process_noise(T, 0.01, dim=1), cwna_process_noise(T, 4.0, dim=1)
 F, Q = np.stack([F1, F1]), np.stack([Q1, Q2])
 H, R = np.array([[1.0, 0.0]]), np.array([[0.3]])
 x0, P0 = np.array([0.0, 1.0]), np.diag([1.0, 0.5])
@@ -79,7 +79,7 @@ def test_where_nothing_is_measured_only_the_models_switch():
 def test_gaps_and_uneven_times_are_those_of_the_kalman_filter():
     steps = np.array([0.5, 1.5, 0.2, 0.5, 0.5, 3.0, 0.5, 0.5])
     moves = np.stack([ncv_transition(T, dim=1) for T in steps])
-    noises = np.stack([wna_process_noise(T, 0.3, dim=1) for T in steps])
+    noises = np.stack([cwna_process_noise(T, 0.3, dim=1) for T in steps])
     two, noise = np.array([[1.0, 0.0], [0.3, 1.0]]), np.diag([0.3, 0.5])
     z = np.random.default_rng(18).standard_normal((3, K, 2))
     z[0, 1, 0] = z[:, 3, 1] = z[1, 5] = np.nan

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import chi2, multivariate_normal
 
 from dopplerlib import chi2_interval, kf, kf_predict, kf_update
-from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 
 K, n, m = 7, 4, 2
 
@@ -274,10 +274,10 @@ def test_uneven_times_are_even_ones_with_samples_that_are_missing():
     z = np.full((12, 1), np.nan)
     z[kept] = np.random.default_rng(15).standard_normal((5, 1))
     H, R, start = np.eye(1, 2), [[0.1]], ([0.0, 1.0], np.eye(2))
-    even = kf(z, ncv_transition(0.1, dim=1), wna_process_noise(0.1, 2.0, dim=1), H, R, *start)
+    even = kf(z, ncv_transition(0.1, dim=1), cwna_process_noise(0.1, 2.0, dim=1), H, R, *start)
     steps = 0.1 * np.diff(kept, prepend=-1)
     F = np.stack([ncv_transition(T, dim=1) for T in steps])
-    Q = np.stack([wna_process_noise(T, 2.0, dim=1) for T in steps])
+    Q = np.stack([cwna_process_noise(T, 2.0, dim=1) for T in steps])
     track = kf(z[kept], F, Q, H, R, *start)
     np.testing.assert_allclose(track.x, even.x[kept], rtol=0, atol=1e-13)
     np.testing.assert_allclose(track.P, even.P[kept], rtol=0, atol=1e-13)

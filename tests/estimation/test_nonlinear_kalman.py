@@ -95,10 +95,10 @@ def test_a_singular_start_and_no_process_noise_are_taken(name):
 @every_filter
 @pytest.mark.parametrize("gate", [None, "upper", "two-sided"])
 def test_sample_by_sample_it_is_the_whole_record(name, gate):
-    whole = FILTERS[name](HOLES, gate=gate, confidence=0.6)
+    whole = FILTERS[name](HOLES, gate=gate, gate_probability=0.6)
     state = {"x0": x0, "P0": P0}
     for k in range(K):
-        track = FILTERS[name](HOLES[:, k : k + 1], gate=gate, confidence=0.6, **state)
+        track = FILTERS[name](HOLES[:, k : k + 1], gate=gate, gate_probability=0.6, **state)
         state = {"x0": track.x[:, -1], "P0": track.P[:, -1]}
         np.testing.assert_array_equal(track.x[:, 0], whole.x[:, k])
         np.testing.assert_array_equal(track.P[:, 0], whole.P[:, k])
@@ -109,7 +109,7 @@ def test_sample_by_sample_it_is_the_whole_record(name, gate):
 @every_filter
 @pytest.mark.parametrize("gate", ["upper", "two-sided"])
 def test_what_is_refused_leaves_the_state_as_if_it_were_missing(name, gate):
-    track = FILTERS[name](HOLES, gate=gate, confidence=0.6)
+    track = FILTERS[name](HOLES, gate=gate, gate_probability=0.6)
     count = np.sum(~np.isnan(HOLES), axis=-1)
     lower, upper = gate_bounds(gate, m, 0.6)
     passed = (count > 0) & (lower[count] <= track.nis) & (track.nis <= upper[count])
@@ -121,7 +121,7 @@ def test_what_is_refused_leaves_the_state_as_if_it_were_missing(name, gate):
 
 
 @pytest.mark.parametrize("gate", [None, "upper", "two-sided"])
-@pytest.mark.parametrize("noise", ["common", "independent"])
+@pytest.mark.parametrize("noise", ["shared", "per_axis"])
 def test_the_general_filter_with_doppler_shifts_is_the_compiled_one(gate, noise):
     array = RadarArray.ring(6, 0.2)
     rng = np.random.default_rng(42)
@@ -133,12 +133,12 @@ def test_the_general_filter_with_doppler_shifts_is_the_compiled_one(gate, noise)
     z[0, 10:20, 2] = z[1, 30] = np.nan
     start = path[0] - [0.05, 0.02, -0.03, 0, 0, 0.1]
     P0 = np.diag([0.01] * 3 + [0.1] * 3)
-    want = ekf(z, array, start, P0, T, 2.0, 0.4, noise, gate, confidence=0.9)
+    want = ekf(z, array, start, P0, T, 2.0, 0.4, noise, gate, gate_probability=0.9)
     assert want.updated.mean() > 0.5
     track = ekf_records(
         z, [lambda x, F=F: x @ F.T for F in transition], [lambda x, F=F: F for F in transition], Q,
         lambda x: doppler_shift(x, array), lambda x: doppler_jacobian(x, array), 0.4**2 * np.eye(6),
-        start, P0, gate=gate, confidence=0.9,
+        start, P0, gate=gate, gate_probability=0.9,
     )  # fmt: skip
     assert_close(
         track, want, rtol=1e-7
@@ -313,7 +313,7 @@ def test_polar_radar_with_angles_far_from_linear_is_tracked_by_both():
 
 BAD = {
     "z": np.full((K, m), np.inf), "f": 3.0, "Q": -Q, "h": lambda x: x, "R": 0 * R,
-    "x0": np.zeros(n + 1), "P0": -P0, "wrap": (m,), "gate": "lower", "confidence": 2.0,
+    "x0": np.zeros(n + 1), "P0": -P0, "wrap": (m,), "gate": "lower", "gate_probability": 2.0,
 }  # fmt: skip
 
 

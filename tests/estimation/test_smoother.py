@@ -5,10 +5,10 @@ import pytest
 
 from dopplerlib import kf
 from dopplerlib.estimation.smoother import rts_smooth
-from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 
 K, n = 12, 2
-F, Q = ncv_transition(0.5, dim=1), wna_process_noise(0.5, 0.3, dim=1)
+F, Q = ncv_transition(0.5, dim=1), cwna_process_noise(0.5, 0.3, dim=1)
 H, R = np.array([[1.0, 0.0]]), np.array([[0.4]])
 x0, P0 = np.array([1.0, -1.0]), np.diag([4.0, 2.0])
 
@@ -79,7 +79,7 @@ def test_uneven_times_are_even_ones_with_samples_that_are_missing():
     full = kf(z, F, Q, H, R, x0, P0)
     steps = 0.5 * np.diff(kept, prepend=-1)
     moves = np.stack([ncv_transition(T, dim=1) for T in steps])
-    noises = np.stack([wna_process_noise(T, 0.3, dim=1) for T in steps])
+    noises = np.stack([cwna_process_noise(T, 0.3, dim=1) for T in steps])
     track = kf(z[:, kept], moves, noises, H, R, x0, P0)
     x, P = rts_smooth(track.x, track.P, moves, noises)
     even_x, even_P = rts_smooth(full.x, full.P, F, Q)

@@ -5,7 +5,7 @@ import pytest
 
 from dopplerlib import kf
 from dopplerlib.estimation.steady_state import steady_state_gain, steady_state_lag
-from dopplerlib.model.kinematics import ncv_transition, velocity_step_noise
+from dopplerlib.model.motion import ncv_transition, velocity_step_noise
 
 T = 0.1
 F, H = ncv_transition(T, dim=1), np.array([[1.0, 0.0]])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from dopplerlib import RadarArray, doppler_shift, ml_start
-from dopplerlib.estimation.variable_projection import best_velocity
+from dopplerlib import RadarArray, doppler_shift, ml_initialize
+from dopplerlib.estimation.variable_projection import velocity_given_position
 
 RING, LINE = RadarArray.ring(6, 0.2), RadarArray.linear(5, 0.4)
 STATE = np.array([0.8, 0.1, 0.1, -0.7, -0.1, 0.2])
@@ -17,7 +17,7 @@ def noisy(x, array, sigma_f, seed):
 
 
 def test_at_the_true_position_exact_shifts_give_the_true_velocity():
-    v, cost = best_velocity(doppler_shift(STATE, RING), RING, 0.4, STATE[:3])
+    v, cost = velocity_given_position(doppler_shift(STATE, RING), RING, 0.4, STATE[:3])
     assert_allclose(v, STATE[3:], rtol=1e-10)  # the matrix has a condition number of 20
     assert cost < 1e-18
 
@@ -25,7 +25,7 @@ def test_at_the_true_position_exact_shifts_give_the_true_velocity():
 def test_the_cost_is_the_misfit_of_position_and_velocity():
     z = noisy(STATE, RING, 0.4, 1)
     p = np.random.default_rng(2).normal(STATE[:3], 0.1, (7, 3))
-    v, cost = best_velocity(z, RING, 0.4, p)
+    v, cost = velocity_given_position(z, RING, 0.4, p)
     misfit = (z - doppler_shift(np.concatenate([p, v], axis=-1), RING)) / 0.4
     assert_allclose(cost, np.sum(misfit**2, axis=-1), rtol=1e-9)
 
@@ -34,7 +34,7 @@ def test_no_other_velocity_is_better():
     z = noisy(STATE, RING, 0.4, 3)
     deviations = 0.4 * np.arange(1, 7)
     p = np.add(STATE[:3], [0.1, 0, 0])
-    v, cost = best_velocity(z, RING, deviations, p)
+    v, cost = velocity_given_position(z, RING, deviations, p)
     others = v + np.random.default_rng(4).normal(0, 0.01, (200, 3))
     states = np.concatenate([np.broadcast_to(p, (200, 3)), others], axis=-1)
     misfits = np.sum(((z - doppler_shift(states, RING)) / deviations) ** 2, axis=-1)
@@ -44,22 +44,24 @@ def test_no_other_velocity_is_better():
 def test_the_search_ends_where_no_position_is_better_and_with_this_velocity():
     z = noisy([0.5, 0.2, 0, -1, 0.5, 0], LINE, 0.1, 5)
     box = [0.05, -1, 0, -3, -3, 0], [2, 1, 0, 3, 3, 0]
-    start = ml_start(z[None], LINE, 0.1, 0.001, box)
-    v, cost = best_velocity(z, LINE, 0.1, start.x[:3], in_plane=True)
+    start = ml_initialize(z[None], LINE, 0.1, 0.001, box)
+    v, cost = velocity_given_position(z, LINE, 0.1, start.x[:3], in_plane=True)
     assert not start.at_bound.any()
     assert_allclose(v, start.x[3:], atol=1e-6)
     assert cost == pytest.approx(float(start.cost), rel=1e-9)
     across = np.random.default_rng(6).uniform([0.05, -1, 0], [2, 1, 0], (4000, 3))
-    assert best_velocity(z, LINE, 0.1, across, in_plane=True)[1].min() >= cost
+    assert velocity_given_position(z, LINE, 0.1, across, in_plane=True)[1].min() >= cost
 
 
 def test_in_the_plane_no_velocity_leaves_it():
-    v, _ = best_velocity([1.0, 2, 3, 4, 5], LINE, 0.1, [[0.5, 0.1, 0], [0.2, -0.3, 0]], True)
+    v, _ = velocity_given_position(
+        [1.0, 2, 3, 4, 5], LINE, 0.1, [[0.5, 0.1, 0], [0.2, -0.3, 0]], True
+    )
     assert (v[:, 2] == 0).all()
 
 
 def test_on_the_line_of_the_sensors_the_shortest_velocity_is_taken():
-    v, _ = best_velocity(np.full(5, -160.0), LINE, 0.1, [0, 0.7, 0])
+    v, _ = velocity_given_position(np.full(5, -160.0), LINE, 0.1, [0, 0.7, 0])
     assert_allclose(v, [0, 1, 0], atol=1e-12)  # speed across the line changes no shift
 
 
@@ -79,4 +81,4 @@ def test_on_the_line_of_the_sensors_the_shortest_velocity_is_taken():
 def test_what_is_no_linear_problem_is_refused(changed, match):
     arguments = {"z": np.ones(6), "array": RING, "sigma_f": 0.4, "p": [1.0, 0, 0]} | changed
     with pytest.raises(ValueError, match=match):
-        best_velocity(**arguments)
+        velocity_given_position(**arguments)

@@ -94,7 +94,7 @@ def right():
     """Return NEES (runs, K) of a right filter of position and velocity, and what it is worth."""
     rng = np.random.default_rng(32)
     runs, K, axis = 2000, 200, np.ix_([0, 3], [0, 3])
-    F, Q = (m[axis] for m in constant_velocity(0.1, 1.0, "independent"))
+    F, Q = (m[axis] for m in constant_velocity(0.1, 1.0, "per_axis"))
     H, R, P0 = np.array([[1.0, 0.0]]), np.array([[0.25]]), np.eye(2)
     x = rng.standard_normal((runs, 2))
     truth = np.empty((runs, K, 2))

@@ -57,11 +57,11 @@ def numerical_information(x, array, sigma_f, moving):
 
 
 @pytest.mark.parametrize("array", [RING, LINE, SCATTERED], ids=["ring", "line", "scattered"])
-@pytest.mark.parametrize("likelihood", ["static", "moving"])
+@pytest.mark.parametrize("likelihood", ["stationary", "constant_velocity"])
 def test_the_information_is_the_covariance_of_the_score(array, likelihood):
     sigma_f = np.random.default_rng(51).uniform(0.1, 1, (3, len(array)))
     got = fisher_information(STATE, array, sigma_f, 3, T, likelihood)
-    want = numerical_information(STATE, array, sigma_f, likelihood == "moving")
+    want = numerical_information(STATE, array, sigma_f, likelihood == "constant_velocity")
     scale = np.sqrt(np.diag(want))
     scale[scale == 0] = 1.0
     # Relative to the diagonal; the measurement z = h + sigma is rounded to 1e-16 of hundreds of Hz.
@@ -71,9 +71,9 @@ def test_the_information_is_the_covariance_of_the_score(array, likelihood):
 
 
 def test_the_bound_is_the_inverse_of_a_regular_information():
-    J = fisher_information(STATE, RING, 0.4, 10, T, "moving")
+    J = fisher_information(STATE, RING, 0.4, 10, T, "constant_velocity")
     # The condition number, scaled, is 1e5; both sides lose as many of sixteen digits.
-    identity = J @ crlb(STATE, RING, 0.4, 10, T, "moving")
+    identity = J @ crlb(STATE, RING, 0.4, 10, T, "constant_velocity")
     scale = np.sqrt(np.diag(J))
     np.testing.assert_allclose(identity * scale / scale[:, None], np.eye(6), atol=1e-9)
 
@@ -146,15 +146,17 @@ def test_samples_of_a_constant_state_count_like_their_number():
 
 
 def test_motion_makes_a_ring_see_range():
-    P = crlb(STATE, RING, 0.4, 10, T, "moving")
+    P = crlb(STATE, RING, 0.4, 10, T, "constant_velocity")
     assert np.isfinite(P).all() and (np.linalg.eigvalsh(P) > 0).all()
 
 
 def test_the_bound_is_batched():
     x = np.random.default_rng(53).normal(size=(2, 3, 6))
-    together = crlb(x, RADAR7, 0.4, 2, T, "moving")
+    together = crlb(x, RADAR7, 0.4, 2, T, "constant_velocity")
     assert together.shape == (2, 3, 6, 6)
-    np.testing.assert_array_equal(together[1, 2], crlb(x[1, 2], RADAR7, 0.4, 2, T, "moving"))
+    np.testing.assert_array_equal(
+        together[1, 2], crlb(x[1, 2], RADAR7, 0.4, 2, T, "constant_velocity")
+    )
 
 
 RADAR7 = RadarArray(np.vstack([RING.positions, [0.05, 0.02, 0.01]]))
@@ -170,11 +172,18 @@ RADAR7 = RadarArray(np.vstack([RING.positions, [0.05, 0.02, 0.01]]))
         ({"sigma_f": [1.0, 2.0]}, "sigma_f must have leading axes that broadcast"),
         ({"K": 0}, "K must be a whole number of at least 1"),
         ({"T": 0}, "T must be positive"),
-        ({"likelihood": "both"}, "likelihood must be one of 'static', 'moving'"),
+        ({"likelihood": "both"}, "likelihood must be one of 'stationary', 'constant_velocity'"),
         ({"free": [1, 1, 0]}, "free must be an array of booleans"),
     ],
 )
 def test_a_wrong_argument_is_named(change, message):
-    arguments = {"x": STATE, "array": RING, "sigma_f": 0.4, "K": 2, "T": T, "likelihood": "static"}
+    arguments = {
+        "x": STATE,
+        "array": RING,
+        "sigma_f": 0.4,
+        "K": 2,
+        "T": T,
+        "likelihood": "stationary",
+    }
     with pytest.raises(ValueError, match=message):
         crlb(**arguments | change)

@@ -50,7 +50,7 @@ def spoiled(change):
 
 def offset(tracker, **wrong):
     """Return the filter with a setting scaled."""
-    names = ("z", "array", "x0", "P0", "T", "sigma_p", "sigma_f")
+    names = ("z", "array", "x0", "P0", "T", "sigma_a", "sigma_f")
 
     def filtered(*arguments):
         settings = dict(zip(names, arguments, strict=True))
@@ -69,7 +69,7 @@ def test_filters_broken_in_other_ways_fail_where_they_should():
     assert "P symmetric and positive" in failed(spoiled(lopsided))
     assert "NIS average" in failed(offset(RIGHT, sigma_f=1.1))
     assert "NEES average" in failed(offset(RIGHT, P0=0.5))
-    assert "linear limit equals the Kalman filter" in failed(offset(RIGHT, sigma_p=2))
+    assert "linear limit equals the Kalman filter" in failed(offset(RIGHT, sigma_a=2))
     late = spoiled(lambda track: replace(track, x=track.x + np.eye(6)[0] * 1e-6))
     assert "stays on the truth without noise" in failed(late)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dopplerlib import errors_by_direction, nis
+from dopplerlib import nis, principal_axis_errors
 
 
 @pytest.fixture
@@ -14,7 +14,7 @@ def covariance():
 
 def test_the_squares_add_up_to_the_quadratic_form(covariance):
     error = np.random.default_rng(62).normal(size=(7, 5, 4))
-    along = errors_by_direction(error, covariance)
+    along = principal_axis_errors(error, covariance)
     assert along.shape == (7, 5, 4)
     np.testing.assert_allclose(np.sum(along**2, axis=-1), nis(error, covariance), rtol=1e-9)
 
@@ -23,7 +23,7 @@ def test_an_error_along_the_widest_axis_stands_first(covariance):
     variance, axis = np.linalg.eigh(covariance)
     widest = np.sqrt(variance[:, -1:]) * axis[:, :, -1]
     np.testing.assert_allclose(
-        np.abs(errors_by_direction(2 * widest, covariance)),
+        np.abs(principal_axis_errors(2 * widest, covariance)),
         np.tile([2, 0, 0, 0], (5, 1)),
         atol=1e-9,
     )
@@ -31,13 +31,13 @@ def test_an_error_along_the_widest_axis_stands_first(covariance):
 
 def test_the_sign_is_that_of_the_largest_component_of_the_axis():
     P = np.diag([1.0, 4.0])
-    np.testing.assert_allclose(errors_by_direction([[3, -2], [-3, 2]], P), [[-1, 3], [1, -3]])
+    np.testing.assert_allclose(principal_axis_errors([[3, -2], [-3, 2]], P), [[-1, 3], [1, -3]])
 
 
 def test_one_covariance_serves_many_errors(covariance):
     error = np.random.default_rng(63).normal(size=(9, 4))
-    once = errors_by_direction(error, covariance[:1])
-    np.testing.assert_allclose(once, errors_by_direction(error, covariance[[0] * 9]))
+    once = principal_axis_errors(error, covariance[:1])
+    np.testing.assert_allclose(once, principal_axis_errors(error, covariance[[0] * 9]))
 
 
 @pytest.mark.parametrize(
@@ -51,11 +51,11 @@ def test_one_covariance_serves_many_errors(covariance):
 )
 def test_wrong_arguments_are_named(error, P, message):
     with pytest.raises(ValueError, match=message):
-        errors_by_direction(error, P)
+        principal_axis_errors(error, P)
 
 
 def test_an_axis_without_spread_has_no_error_or_an_infinite_one():
     P = np.diag([4.0, 0.0, 1.0])
-    assert errors_by_direction([2.0, 0.0, 3.0], P).tolist() == [1.0, 3.0, 0.0]
-    assert errors_by_direction([2.0, -1e-3, 3.0], P).tolist() == [1.0, 3.0, -np.inf]
-    assert errors_by_direction(np.zeros(3), 0 * P).tolist() == [0.0, 0.0, 0.0]
+    assert principal_axis_errors([2.0, 0.0, 3.0], P).tolist() == [1.0, 3.0, 0.0]
+    assert principal_axis_errors([2.0, -1e-3, 3.0], P).tolist() == [1.0, 3.0, -np.inf]
+    assert principal_axis_errors(np.zeros(3), 0 * P).tolist() == [0.0, 0.0, 0.0]

@@ -6,9 +6,9 @@ from scipy.stats import binomtest, bootstrap, ttest_1samp
 
 from dopplerlib.evaluation.intervals import (
     mean_interval,
+    proportion_interval,
     quantile_interval,
     rms_interval,
-    share_interval,
 )
 
 TRIALS = 2000
@@ -38,7 +38,7 @@ def test_an_interval_of_one_large_error_reaches_down_to_zero():
 
 @pytest.mark.parametrize("hits", [0, 1, 7, 29, 30])
 def test_the_interval_of_a_share_is_the_exact_one_of_scipy(hits):
-    found = share_interval(np.arange(30) < hits, 0.99)
+    found = proportion_interval(np.arange(30) < hits, 0.99)
     expected = binomtest(hits, 30).proportion_ci(0.99, method="exact")
     np.testing.assert_allclose([found.low, found.high], expected, rtol=1e-9, atol=1e-12)
     assert found.value == hits / 30
@@ -82,9 +82,9 @@ def test_infinite_runs_have_a_median_but_no_mean():
         ),
         (lambda: quantile_interval([np.nan]), "values must be finite, got nan"),
         (lambda: quantile_interval([1.0], q=1.0), "q must lie between 0 and 1, got 1.0"),
-        (lambda: share_interval([]), "hits must be an array of booleans"),
-        (lambda: share_interval([0, 1]), r"hits must be an array of booleans, got \[0, 1\]"),
-        (lambda: share_interval([True], 95), "confidence must lie between 0 and 1, got 95"),
+        (lambda: proportion_interval([]), "hits must be an array of booleans"),
+        (lambda: proportion_interval([0, 1]), r"hits must be an array of booleans, got \[0, 1\]"),
+        (lambda: proportion_interval([True], 95), "confidence must lie between 0 and 1, got 95"),
     ],
 )
 def test_bad_input_is_refused(call, message):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dopplerlib import RadarArray, crlb, doppler_jacobian, doppler_shift, ml_start, ring_family
-from dopplerlib.evaluation.observability import confusion, rms_bounds, seen_directions
+from dopplerlib import RadarArray, crlb, doppler_jacobian, doppler_shift, ml_initialize, ring_family
+from dopplerlib.evaluation.observability import nearest_ambiguity, observable_rank, rms_bounds
 from dopplerlib.model.twin import planar_twin
 
 T, SIGMA_F = 1e-3, 0.4
@@ -16,7 +16,7 @@ BOX = [0.1, -1, -1, -2, -2, -2], [3, 1, 1, 2, 2, 2]
 @pytest.mark.parametrize("sensors", [1, 2, 3, 4, 5, 6, 24])
 def test_a_ring_sees_as_many_directions_as_sensors_and_five_at_most(sensors):
     x = np.random.default_rng(60).normal(size=(30, 6))
-    seen = seen_directions(x, RadarArray.ring(sensors, 0.2))
+    seen = observable_rank(x, RadarArray.ring(sensors, 0.2))
     assert (seen == min(sensors, 5)).all()
 
 
@@ -24,18 +24,18 @@ def test_a_ring_sees_as_many_directions_as_sensors_and_five_at_most(sensors):
     ("x", "seen"), [([0.8, 0, 0, -0.75, 0, 0], 3), ([0.8, 0, 0, -0.75, 0.3, 0], 5)]
 )
 def test_a_target_straight_on_the_axis_is_seen_in_three_directions(x, seen):
-    assert seen_directions(x, RadarArray.ring(9, 0.2)) == seen
+    assert observable_rank(x, RadarArray.ring(9, 0.2)) == seen
 
 
 def test_motion_shows_all_to_a_ring_but_never_the_turn_about_a_line():
-    assert seen_directions(STATE, RING, 50, T, "moving") == 6
-    assert seen_directions(STATE, LINE) == 4
-    assert seen_directions(STATE, LINE, 50, T, "moving") == 5
+    assert observable_rank(STATE, RING, 50, T, "constant_velocity") == 6
+    assert observable_rank(STATE, LINE) == 4
+    assert observable_rank(STATE, LINE, 50, T, "constant_velocity") == 5
 
 
 def test_in_a_plane_a_line_sees_all_four_unknowns():
     plane = [True, True, False, True, True, False]
-    assert seen_directions(STATE * plane, LINE, free=plane) == 4
+    assert observable_rank(STATE * plane, LINE, free=plane) == 4
 
 
 def test_bounds_are_roots_of_sums_of_variances():
@@ -66,7 +66,7 @@ def test_what_is_not_seen_has_infinite_bounds():
 
 @pytest.fixture(scope="module")
 def second():
-    return confusion(STATE, RING, SIGMA_F, 100, T, BOX)
+    return nearest_ambiguity(STATE, RING, SIGMA_F, 100, T, BOX)
 
 
 def test_the_second_valley_is_near_the_family_of_the_twin(second):
@@ -83,7 +83,7 @@ def test_noise_chooses_the_second_valley_as_often_as_predicted(second):
     path = np.tile(STATE, (100, 1))
     path[:, :3] += T * np.arange(100)[:, None] * STATE[3:]
     noise = np.random.default_rng(63).normal(0, SIGMA_F, (runs, 100, 6))
-    found = ml_start(doppler_shift(path, RING) + noise, RING, SIGMA_F, T, BOX).x
+    found = ml_initialize(doppler_shift(path, RING) + noise, RING, SIGMA_F, T, BOX).x
     to_truth, to_second = (np.linalg.norm((found - y)[:, 1:3], axis=1) for y in (STATE, x))
     # Five standard errors (false alarms: 1e-6), and 0.03 as the formula lets no optimum move.
     tolerance = 5 * np.sqrt(chance * (1 - chance) / runs) + 0.03
@@ -93,4 +93,4 @@ def test_noise_chooses_the_second_valley_as_often_as_predicted(second):
 
 def test_a_second_ring_leaves_nothing_to_be_confused_with():
     array = RadarArray(np.vstack([RING.positions, RING.positions / 2]))
-    assert confusion(STATE, array, SIGMA_F, 100, T, BOX)[1] < 1e-3
+    assert nearest_ambiguity(STATE, array, SIGMA_F, 100, T, BOX)[1] < 1e-3

@@ -21,32 +21,32 @@ from dopplerlib import (
 from dopplerlib._records import record
 from dopplerlib.evaluation.alarms import first_alarm, innovation_alarms
 from dopplerlib.evaluation.averages import effective_samples
-from dopplerlib.evaluation.directions import errors_by_direction
+from dopplerlib.evaluation.directions import principal_axis_errors
 from dopplerlib.evaluation.intervals import (
     mean_interval,
+    proportion_interval,
     quantile_interval,
     rms_interval,
-    share_interval,
 )
-from dopplerlib.evaluation.observability import rms_bounds, seen_directions
+from dopplerlib.evaluation.observability import observable_rank, rms_bounds
 from dopplerlib.evaluation.range_bounds import range_crlb
 from dopplerlib.model.ambiguity import ring_family, ring_family_direction, ring_family_limits
 from dopplerlib.model.information import fisher_information, inverse_information
-from dopplerlib.model.kinematics import (
+from dopplerlib.model.motion import (
+    constant_velocity,
+    cwna_process_noise,
+    cwnj_process_noise,
     nca_transition,
     ncv_transition,
     velocity_step_noise,
-    wna_process_noise,
-    wnj_process_noise,
 )  # fmt: skip
-from dopplerlib.model.motion import constant_velocity
 from dopplerlib.model.polar_radar import polar_position, polar_radar_h, polar_radar_jacobian
 from dopplerlib.model.range_rate import range_rate, range_rate_jacobian
 from dopplerlib.model.ranging_noise import (
     detection_probability,
     fourth_power_snr,
     linear_snr,
-    resolution_deviation,
+    range_std,
 )  # fmt: skip
 from dopplerlib.model.twin import planar_twin
 from dopplerlib.replication.claims import Claim
@@ -79,15 +79,15 @@ SCALED = {
     "Scenario T": lambda s: Scenario(RING, X, 0.1 * s, 3, 1.0, 1.0, np.eye(6)).truth,
     "fisher x": lambda s: fisher_information(X * [1, 1, 1, s, s, s], RING, 0.4),
     "fisher sigma": lambda s: fisher_information(X, RING, 0.4 * s),
-    "fisher T": lambda s: fisher_information(X, RING, 0.4, 3, 0.1 * s, "moving"),
+    "fisher T": lambda s: fisher_information(X, RING, 0.4, 3, 0.1 * s, "constant_velocity"),
     "crlb": lambda s: crlb(X, RING, 0.4 * s, free=[True] * 2 + [False] * 4),
-    "seen_directions": lambda s: seen_directions(s * X, RING),
+    "observable_rank": lambda s: observable_rank(s * X, RING),
     "inverse_information": lambda s: inverse_information(s * np.eye(2))[0],
     "ncv": lambda s: ncv_transition(s),
     "nca": lambda s: nca_transition(s),
-    "wna T": lambda s: wna_process_noise(s, 1.0),
-    "wna q": lambda s: wna_process_noise(1e10, s),
-    "wnj": lambda s: wnj_process_noise(s, 1.0),
+    "wna T": lambda s: cwna_process_noise(s, 1.0),
+    "wna q": lambda s: cwna_process_noise(1e10, s),
+    "wnj": lambda s: cwnj_process_noise(s, 1.0),
     "velocity_step": lambda s: velocity_step_noise(s),
     "constant_velocity": lambda s: constant_velocity(s, 0.4)[1],
     "polar h": lambda s: polar_radar_h(s * PLANE),
@@ -98,7 +98,7 @@ SCALED = {
     "range_crlb": lambda s: range_crlb([1.0, 4.0], [[-0.5, 0], [0.5, 0]], 0.03 * s),
     "linear_snr": lambda s: linear_snr(s, 52.0, 1e-100 * s),
     "fourth_power_snr": lambda s: fourth_power_snr(s, 1.0),
-    "resolution_deviation": lambda s: resolution_deviation(0.1, s),
+    "range_std": lambda s: range_std(0.1, s),
     "detection_probability": lambda s: detection_probability(s, 1e-6),
     "planar_twin": lambda s: planar_twin(s * X),
     "ring_family": lambda s: ring_family(X * [s, s, s, 1, 1, 1], 0.2 * s, 1.1),
@@ -114,7 +114,7 @@ SCALED = {
         Track(None, None, s * WHITE, ONES, None, None), [60])["NIS average"],
     "nees_samples F": lambda s: nees_samples(EYES, s * np.eye(2), np.eye(2)),
     "nees_samples P": lambda s: nees_samples(s * EYES, np.eye(2), np.eye(2)),
-    "errors_by_direction": lambda s: errors_by_direction([s, 1.0], np.eye(2)),
+    "principal_axis_errors": lambda s: principal_axis_errors([s, 1.0], np.eye(2)),
     "rms_bounds": lambda s: rms_bounds(s * np.eye(6), X),
     "rms_bounds x": lambda s: rms_bounds(np.eye(6), s * X),
     "mean_interval": lambda s: [mean_interval([s, 2.0, 3.0]).value],
@@ -187,12 +187,12 @@ ITERATED = {
     "alarms": lambda of: innovation_alarms(
         Track(None, None, WHITE, ONES, None, None), of([20, 60])),
     "first_alarm": lambda of: first_alarm(of([[False, True]]), of([20, 60])),
-    "errors_by_direction": lambda of: errors_by_direction(of([1.0, 1.0]), of(np.eye(2))),
+    "principal_axis_errors": lambda of: principal_axis_errors(of([1.0, 1.0]), of(np.eye(2))),
     "rms_bounds": lambda of: rms_bounds(of(np.eye(6)), of(X)),
     "mean_interval": lambda of: mean_interval(of([1.0, 2.0, 3.0])),
     "rms_interval": lambda of: rms_interval(of([1.0, 2.0, 3.0])),
     "quantile_interval": lambda of: quantile_interval(of([1.0, 2.0, 3.0])),
-    "share_interval": lambda of: share_interval(of([True, False])),
+    "proportion_interval": lambda of: proportion_interval(of([True, False])),
     "effective_samples": lambda of: effective_samples(of([0.5, 0.2]), 10),
     "velocity_profile": lambda of: velocity_profile(of([0.0, 1.0]), 1.0, of([[0, 1, 2]])),
     "quantize": lambda of: quantize(of([1.0, 1j]), 8, 1.0),

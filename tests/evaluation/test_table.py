@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import Table
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 
 ERRORS = Table(
     {"ours": (0.024, 1.9, 3), "paper": (float("nan"), 0.25, "none")},
@@ -45,16 +45,23 @@ def test_whole_numbers_have_no_decimals_and_labels_may_be_numbers():
 
 
 def test_a_format_says_how_numbers_and_intervals_are_written():
-    rows = {"a": (0.123456, Estimate(2.0, 1.5, 2.75), Estimate(0.5, 0.25, 0.75), 12345)}
+    rows = {
+        "a": (
+            0.123456,
+            ConfidenceInterval(2.0, 1.5, 2.75),
+            ConfidenceInterval(0.5, 0.25, 0.75),
+            12345,
+        )
+    }
     table = Table(rows, tuple("wxyz"), (".1e", 2, "±.3f", ".3g"))
     assert table.cells[1] == ["a", "1.2e-01", "2.00 (1.50 to 2.75)", "0.500 ± 0.250", "1.23e+04"]
-    assert Table({"a": Estimate(0.5, 0.25, 0.75)}, digits=".0%").cells == [
+    assert Table({"a": ConfidenceInterval(0.5, 0.25, 0.75)}, digits=".0%").cells == [
         ["a", "50% (25% to 75%)"]
     ]
 
 
 def test_what_rounds_to_zero_has_no_sign_and_an_open_interval_says_so():
-    cells = (-1e-17, Estimate(1.0, -np.inf, np.inf), np.inf)
+    cells = (-1e-17, ConfidenceInterval(1.0, -np.inf, np.inf), np.inf)
     assert Table({"a": cells}, tuple("xyz"), 1).cells[1] == ["a", "0.0", "1.0 (-∞ to ∞)", "∞"]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import asheim_beyond as draw
 from tests.drawn import check_figures, lines
 
@@ -34,7 +34,9 @@ def test_the_contours_of_the_bound_are_labeled_large_enough_to_read(bound):
 
 
 def test_a_range_beyond_the_record_is_drawn_as_an_arrow_at_the_edge():
-    found = dict.fromkeys("xyz", Estimate(5.0, 4.9, 5.2)) | {"z": Estimate(np.inf, 6, np.inf)}
+    found = dict.fromkeys("xyz", ConfidenceInterval(5.0, 4.9, 5.2)) | {
+        "z": ConfidenceInterval(np.inf, 6, np.inf)
+    }
     (ax,) = draw.reach({"a": found}).axes
     points = [line for line in ax.lines if len(line.get_xdata()) == 1]
     assert [(one.get_xdata()[0], one.get_marker()) for one in points] == [
@@ -43,18 +45,18 @@ def test_a_range_beyond_the_record_is_drawn_as_an_arrow_at_the_edge():
 
 
 def test_a_sweep_shows_every_value_with_its_interval():
-    (ax,) = draw.sweep([0.0, 1.0], {"a": [Estimate(1.0, 0.9, 1.1)] * 2}, "delay (s)").axes
+    (ax,) = draw.sweep([0.0, 1.0], {"a": [ConfidenceInterval(1.0, 0.9, 1.1)] * 2}, "delay (s)").axes
     assert lines(ax)["a"].get_xydata().tolist() == [[0.0, 1.0], [1.0, 1.0]]
     ends = ax.collections[0].get_paths()[0].vertices[:, 1]
     assert (ends.min(), ends.max()) == (0.9, 1.1)
 
 
 def test_every_figure_fits_the_page(bound):
-    one = Estimate(5.0, 4.9, np.inf)
+    one = ConfidenceInterval(5.0, 4.9, np.inf)
     figures = {
         "bound_map": bound,
         "consistency": draw.consistency(TIME, {"a": {"b": TIME}}, [(0.9, 1.1)]),
         "reach": draw.reach({"a": dict.fromkeys("xyz", one)}),
-        "sweep": draw.sweep(TIME[:1], {"a": [Estimate(1.0, 0.9, 1.1)]}, "delay (s)"),
+        "sweep": draw.sweep(TIME[:1], {"a": [ConfidenceInterval(1.0, 0.9, 1.1)]}, "delay (s)"),
     }
     check_figures(draw, figures)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import automotive as draw
 from dopplerlib.figures import automotive_beyond as draw_beyond
 from dopplerlib.figures import automotive_filter as draw_filter
@@ -113,7 +113,7 @@ def test_a_claim_map_tells_what_is_sure_and_what_is_not():
 
 def test_lags_carry_their_intervals():
     w = np.array([0.01, 0.1])
-    measured = {0.01: (Estimate(0.5, 0.4, 0.6), Estimate(0.2, 0.1, 0.3))}
+    measured = {0.01: (ConfidenceInterval(0.5, 0.4, 0.6), ConfidenceInterval(0.2, 0.1, 0.3))}
     figure = draw_filter.lags(w, np.ones((2, 2)), np.ones((2, 2)), measured)
     for ax, value in zip(figure.axes, (0.5, 0.2), strict=True):
         (points,) = ax.containers
@@ -138,7 +138,7 @@ def test_statistics_tracks_holes_and_models_keep_labels_and_units():
 
 
 def test_crossings_show_a_share_with_its_interval_at_every_angle():
-    shares = {"a": [Estimate(0.5, 0.4, 0.6), Estimate(0.1, 0.0, 0.2)]}
+    shares = {"a": [ConfidenceInterval(0.5, 0.4, 0.6), ConfidenceInterval(0.1, 0.0, 0.2)]}
     truth = np.zeros((2, 6, 4))
     left, right = draw_beyond.crossings(truth, truth + 1, shares, (10, 20)).axes
     assert len(left.lines) == 4

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import end_to_end as draw
 
 
@@ -26,9 +26,9 @@ def test_a_window_belongs_to_its_middle_less_the_delay():
 
 def test_the_budget_has_a_row_for_each_name_in_millimeters():
     rows = [
-        ("first", [Estimate(0.01, 0.008, 0.02)], [0.03]),
+        ("first", [ConfidenceInterval(0.01, 0.008, 0.02)], [0.03]),
         ("", [], []),
-        ("second", [Estimate(0.1, 0.08, 0.2)], [0.3]),
+        ("second", [ConfidenceInterval(0.1, 0.08, 0.2)], [0.3]),
     ]
     figure = draw.budget([(n, m * 2, w * 2) for n, m, w in rows], (0.5, 1.0))
     left = figure.axes[0]
@@ -42,7 +42,11 @@ def test_the_budget_has_a_row_for_each_name_in_millimeters():
 
 
 def test_wrong_times_are_drawn_in_both_panels_with_their_intervals():
-    time, one, two = np.arange(3.0), [Estimate(1, 0.5, 2)] * 3, [Estimate(3, 2, 5)] * 3
+    time, one, two = (
+        np.arange(3.0),
+        [ConfidenceInterval(1, 0.5, 2)] * 3,
+        [ConfidenceInterval(3, 2, 5)] * 3,
+    )
     left, right = draw.wrong_time(time, [one, one], [one, two], ["a", "b"]).axes
     np.testing.assert_array_equal(labels(left)["b"].get_ydata(), [1, 1, 1])
     np.testing.assert_array_equal(labels(right)["b"].get_ydata(), [3, 3, 3])
@@ -53,7 +57,10 @@ def test_wrong_times_are_drawn_in_both_panels_with_their_intervals():
 
 def test_starts_show_the_middle_of_the_errors_and_the_shares():
     errors = {"one": [np.linspace(0.01, 0.03, 11)], "all": [np.linspace(0.001, 0.003, 11)]}
-    shares = {"one": [Estimate(0.5, 0.4, 0.6)], "all": [Estimate(0.1, 0.0, 0.2)]}
+    shares = {
+        "one": [ConfidenceInterval(0.5, 0.4, 0.6)],
+        "all": [ConfidenceInterval(0.1, 0.0, 0.2)],
+    }
     left, right = draw.starts([0.1], errors, shares, limit=0.05).axes
     np.testing.assert_allclose(marked(left), [20, 2])
     np.testing.assert_allclose(marked(right), [50, 10])
@@ -61,7 +68,7 @@ def test_starts_show_the_middle_of_the_errors_and_the_shares():
 
 def test_medians_are_drawn_beside_the_bounds():
     bounds = {"windows": [0.015, 0.005], "samples": [0.002, 0.001]}
-    ax = draw.achievable([40, 50], [Estimate(0.02, 0.01, 0.03)] * 2, bounds).axes[0]
+    ax = draw.achievable([40, 50], [ConfidenceInterval(0.02, 0.01, 0.03)] * 2, bounds).axes[0]
     np.testing.assert_allclose(labels(ax)["windows"].get_ydata(), [15, 5])
     np.testing.assert_allclose(labels(ax)["samples"].get_ydata(), [2, 1])
     np.testing.assert_allclose(labels(ax)["from IQ samples"].get_ydata(), [20, 20])

@@ -2,13 +2,17 @@
 
 import numpy as np
 
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import iq, iq_study
 from dopplerlib.systems.mittermaier2016 import Race
 from tests.drawn import lines
 
-RATIO = [Estimate(2.0, 1.0, 3.0)] * 3
-SHARE = [Estimate(0.5, 0.3, 0.7), Estimate(0.1, 0.01, 0.2), Estimate(0.0, 0.0, 0.1)]
+RATIO = [ConfidenceInterval(2.0, 1.0, 3.0)] * 3
+SHARE = [
+    ConfidenceInterval(0.5, 0.3, 0.7),
+    ConfidenceInterval(0.1, 0.01, 0.2),
+    ConfidenceInterval(0.0, 0.0, 0.1),
+]
 RACE = Race(
     np.arange(3), np.array([10.0, 2.0, 1.0]), 100, dict.fromkeys("abcdefgh", RATIO),
     dict.fromkeys("abcdefgh", SHARE),
@@ -110,7 +114,7 @@ def test_the_correlation_is_drawn_as_measured_and_as_derived():
 
 
 def test_each_filter_shows_its_nis_and_nees():
-    belief = {"a": (Estimate(1.0, 0.9, 1.1), Estimate(7.0, 6.0, 8.0))}
+    belief = {"a": (ConfidenceInterval(1.0, 0.9, 1.1), ConfidenceInterval(7.0, 6.0, 8.0))}
     left, right = iq_study.colored(np.arange(3), {"a": RATIO}, belief).axes
     assert "a" in lines(left)
     heights = [line.get_ydata()[0] for line in right.lines if len(line.get_ydata()) == 1]

@@ -33,7 +33,7 @@ T = 0.001
 samples = 101
 sigma_f = 0.4
 [tracker]
-sigma_p = 0.4
+sigma_a = 0.4
 P0_diagonal = [0.1, 0.1, 0.1, 0.1, 0.1, 0.1]
 """
 CLAIMS = """\

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from dopplerlib import coordinated_turn, coordinated_turn_jacobian, ekf_records, imm, ukf
-from dopplerlib.model.kinematics import ncv_transition
+from dopplerlib.model.motion import ncv_transition
 
 RATES = [0.0, 1e-320, 1e-12, -1e-7, 1e-4, 0.03, 0.249, -0.251, -0.7, 2.0, -9.0]
 T = 0.8

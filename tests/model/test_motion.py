@@ -1,4 +1,4 @@
-"""Constant velocity: the matrices move a target as kinematics says."""
+"""Constant velocity: the matrices move a target as the equations of motion say."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from dopplerlib import constant_velocity
 
 # Powers of two and small whole numbers: every product below is exact.
 T, SIGMA = 4.0, 0.5
-BOTH = ["common", "independent"]
+BOTH = ["shared", "per_axis"]
 
 
 def test_the_transition_moves_the_position_by_the_velocity_times_the_interval():
@@ -33,21 +33,21 @@ def test_a_thousand_predictions_lie_on_the_straight_line_to_the_last_bit():
 
 def test_the_common_noise_has_the_covariance_of_one_acceleration_along_the_diagonal():
     """One draw a moves every axis by a T^2/2 and quickens it by a T: 8 and 4 times a, var 1/4."""
-    _, Q = constant_velocity(T, SIGMA, "common")
+    _, Q = constant_velocity(T, SIGMA, "shared")
     position, mixed, velocity = 8 * 8 / 4, 8 * 4 / 4, 4 * 4 / 4
     expected = [[position] * 3 + [mixed] * 3] * 3 + [[mixed] * 3 + [velocity] * 3] * 3
     assert Q.tolist() == expected
 
 
 def test_independent_noise_has_the_same_variances_and_nothing_between_the_axes():
-    _, Q = constant_velocity(T, SIGMA, "independent")
-    _, common = constant_velocity(T, SIGMA, "common")
+    _, Q = constant_velocity(T, SIGMA, "per_axis")
+    _, common = constant_velocity(T, SIGMA, "shared")
     same_axis = np.equal.outer(np.arange(6) % 3, np.arange(6) % 3)
     np.testing.assert_array_equal(Q, np.where(same_axis, common, 0))
 
 
 def test_the_common_noise_has_rank_one_and_the_independent_rank_three():
-    for noise, rank in [("common", 1), ("independent", 3)]:
+    for noise, rank in [("shared", 1), ("per_axis", 3)]:
         values = np.linalg.eigvalsh(constant_velocity(T, SIGMA, noise)[1])
         assert (values > 1e-12 * values.max()).sum() == rank
         assert values.min() >= -1e-12 * values.max()
@@ -55,7 +55,7 @@ def test_the_common_noise_has_rank_one_and_the_independent_rank_three():
 
 def test_the_papers_noise_is_the_default():
     np.testing.assert_array_equal(
-        constant_velocity(T, SIGMA)[1], constant_velocity(T, SIGMA, "common")[1]
+        constant_velocity(T, SIGMA)[1], constant_velocity(T, SIGMA, "shared")[1]
     )
 
 
@@ -77,18 +77,16 @@ def test_each_interval_has_the_matrices_of_this_interval_alone(noise):
 
 @pytest.mark.parametrize(
     ("name", "bad"),
-    [(name, bad) for name in ("T", "sigma_p") for bad in (0, -1.0, np.nan, np.inf, "fast", None)]
-    + [("T", [1.0, 0.0]), ("sigma_p", [1.0, 2.0])],
+    [(name, bad) for name in ("T", "sigma_a") for bad in (0, -1.0, np.nan, np.inf, "fast", None)]
+    + [("T", [1.0, 0.0]), ("sigma_a", [1.0, 2.0])],
 )
 def test_an_impossible_number_is_refused_by_name(name, bad):
-    arguments = {"T": T, "sigma_p": SIGMA, name: bad}
+    arguments = {"T": T, "sigma_a": SIGMA, name: bad}
     with pytest.raises(ValueError, match=rf"^{name} must be .*, got "):
         constant_velocity(**arguments)
 
 
 @pytest.mark.parametrize("bad", ["white", "Common", None, 1])
 def test_an_unknown_noise_is_refused(bad):
-    with pytest.raises(
-        ValueError, match=f"noise must be one of 'common', 'independent', got {bad!r}"
-    ):
+    with pytest.raises(ValueError, match=f"noise must be one of 'shared', 'per_axis', got {bad!r}"):
         constant_velocity(T, SIGMA, bad)

@@ -7,7 +7,7 @@ from dopplerlib.model.ranging_noise import (
     detection_probability,
     fourth_power_snr,
     linear_snr,
-    resolution_deviation,
+    range_std,
 )
 
 
@@ -18,8 +18,8 @@ def test_the_fourth_power_loses_twelve_decibels_per_doubling_and_the_line_per_me
 
 
 def test_a_deviation_shrinks_with_the_square_root_of_twice_the_ratio():
-    assert resolution_deviation(0.15, 10 * np.log10(0.5)) == pytest.approx(0.15)
-    assert resolution_deviation(0.15, 10 * np.log10(50)) == pytest.approx(0.015)
+    assert range_std(0.15, 10 * np.log10(0.5)) == pytest.approx(0.15)
+    assert range_std(0.15, 10 * np.log10(50)) == pytest.approx(0.015)
 
 
 def test_an_echo_is_detected_as_often_as_in_a_simulation_of_the_detector():
@@ -43,4 +43,4 @@ def test_what_makes_no_sense_is_refused():
     with pytest.raises(ValueError, match="false_alarm must lie between 0 and 1"):
         detection_probability(3.0, 0.0)
     with pytest.raises(ValueError, match="resolution must be positive"):
-        resolution_deviation(-1.0, 3.0)
+        range_std(-1.0, 3.0)

@@ -40,7 +40,7 @@ def test_the_shipped_scenario_has_the_numbers_of_the_paper(scenario):
     start = printed["true_initial_state"]
     assert scenario.x0.tolist() == [start[name] for name in ("x", "y", "z", "vx", "vy", "vz")]
     assert scenario.sigma_f == quoted["sigma_f_hz"]
-    assert scenario.sigma_p == quoted["sigma_p_m_s2"]
+    assert scenario.sigma_a == quoted["sigma_p_m_s2"]
     assert scenario.T == quoted["sampling_interval_s"]
     assert quoted["P0"].startswith("0.1*I6")
     assert scenario.P0.tolist() == (0.1 * np.eye(6)).tolist()
@@ -129,7 +129,7 @@ def test_every_shape_of_array_can_be_described(load, table, array):
         ("x0 =", "x_0 =", r"\[target\] must have x0, got only x_0"),
         ("sigma_f =", "sigma_F =", r"\[sampling\] must have sigma_f, got only T, samples, sigma_F"),
         ("sigma_f =", "jitter = 1\nsigma_f =", r"\[sampling\] must have nothing but .*got jitter"),
-        ("sigma_p =", "gate = 'upper'\nsigma_p =", r"\[tracker\] must have nothing but .*got gate"),
+        ("sigma_a =", "gate = 'upper'\nsigma_a =", r"\[tracker\] must have nothing but .*got gate"),
         # a wrong value
         ("T = 0.001", 'T = "fast"', "T must be an array of real numbers, got 'fast'"),
         ("T = 0.001", 'T = "0.001"', "T must be an array of real numbers, got '0.001'"),
@@ -180,7 +180,7 @@ def test_a_file_that_does_not_exist_is_said_not_to_exist(tmp_path):
         ("P0", np.eye(6) + np.eye(6, k=1) / 4, "P0 must be symmetric"),
         ("P0", np.stack([np.eye(6)] * 2), r"P0 must have shape \(6, 6\), got \(2, 6, 6\)"),
         ("sigma_f", [0.4, 0.4], "sigma_f must be one number"),
-        ("sigma_p", 0.0, "sigma_p must be positive, got 0"),
+        ("sigma_a", 0.0, "sigma_a must be positive, got 0"),
         ("samples", True, "samples must be a whole number"),
         ("array", [[0, 0, 0]], r"array must be a RadarArray, got \[\[0, 0, 0\]\]"),
     ],

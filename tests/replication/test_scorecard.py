@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.replication.claims import Claim
 from dopplerlib.replication.scorecard import Scorecard
 from dopplerlib.replication.verdicts import Draws, Readings, judge
@@ -20,7 +20,7 @@ CLAIMS = {
 CARD = Scorecard(
     (
         judge(CLAIMS["nis"], Draws(np.arange(101.0))),
-        judge(CLAIMS["limit"], Estimate(0.2, 0.19, 0.21)),
+        judge(CLAIMS["limit"], ConfidenceInterval(0.2, 0.19, 0.21)),
         judge(CLAIMS["open"], Readings({"this": 2.0, "that": 3.0})),
     )
 )

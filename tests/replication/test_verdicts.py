@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.replication.claims import Claim, read_claims
 from dopplerlib.replication.verdicts import Draws, Readings, judge, judge_all
 
@@ -44,10 +44,10 @@ def test_all_of_several_numbers_must_be_reproduced():
 )
 def test_a_relation_must_hold_on_the_whole_interval(relation, holds):
     claim = replace(LIMIT, relation=relation)
-    assert judge(claim, Estimate(0.5, 0.4, 0.6)).verdict == (
+    assert judge(claim, ConfidenceInterval(0.5, 0.4, 0.6)).verdict == (
         "reproduced" if holds else "contradicted"
     )
-    assert judge(claim, Estimate(0.95, 0.85, 1.05)).verdict == "underdetermined"
+    assert judge(claim, ConfidenceInterval(0.95, 0.85, 1.05)).verdict == "underdetermined"
 
 
 def test_a_relation_without_uncertainty_is_sharp():
@@ -82,8 +82,8 @@ def test_too_few_runs_leave_a_verdict_undecided():
     near = replace(RUN, published=96.0)
     assert judge(near, Draws(HUNDRED)).decided
     assert not judge(near, Draws(HUNDRED[::100])).decided
-    assert judge(LIMIT, Estimate(0.5, 0.4, 0.6)).decided
-    assert not judge(LIMIT, Estimate(0.8, 0.65, 0.95)).decided
+    assert judge(LIMIT, ConfidenceInterval(0.5, 0.4, 0.6)).decided
+    assert not judge(LIMIT, ConfidenceInterval(0.8, 0.65, 0.95)).decided
 
 
 def test_readings_that_agree_give_their_verdict():
@@ -118,7 +118,7 @@ def test_every_claim_needs_evidence_and_evidence_a_claim():
         (NUMBER, Draws(HUNDRED), "for 'a', a deterministic claim, must be a number"),
         (NUMBER, [0.25, 0.25], r"must be numbers of shape \(\)"),
         (NUMBER, np.nan, "the evidence for 'a' must be finite, got nan"),
-        (LIMIT, Draws(HUNDRED), "for 'b', a relation claim, must be an Estimate"),
+        (LIMIT, Draws(HUNDRED), "for 'b', a relation claim, must be an ConfidenceInterval"),
         (RUN, 50.0, "for 'c', a random claim, must be Draws"),
         (RUN, Draws(HUNDRED, published=50.0), "must be given by the claim .*, got it twice"),
         (replace(RUN, published=None), Draws(HUNDRED), "got it not at all"),
@@ -141,12 +141,12 @@ NOTHING = [
     1j,
     [],
     [np.nan, np.nan],
-    Estimate(np.nan, np.nan, np.nan),
-    Estimate(np.nan, -1e300, 1e300),
-    Estimate(0.0, np.nan, 1.0),
-    Estimate(0.0, -1.0, np.nan),
-    Estimate(0.0, 1.0, -1.0),
-    Estimate(2.0, 0.0, 1.0),
+    ConfidenceInterval(np.nan, np.nan, np.nan),
+    ConfidenceInterval(np.nan, -1e300, 1e300),
+    ConfidenceInterval(0.0, np.nan, 1.0),
+    ConfidenceInterval(0.0, -1.0, np.nan),
+    ConfidenceInterval(0.0, 1.0, -1.0),
+    ConfidenceInterval(2.0, 0.0, 1.0),
     Draws([np.nan] * 50),
     Draws([*range(49), np.nan]),
     Draws(np.arange(50.0), np.nan),
@@ -156,7 +156,9 @@ NOTHING = [
     Readings({"a": np.nan, "b": np.nan}),
     Readings({"a": Draws([np.nan] * 50), "b": Draws([np.nan] * 50)}),
     Readings({"a": Draws([np.nan] * 50, 1.0), "b": Draws([1.0] * 50, np.nan)}),
-    Readings({"a": Estimate(0.0, np.nan, np.nan), "b": Estimate(np.nan, 0.0, 0.0)}),
+    Readings(
+        {"a": ConfidenceInterval(0.0, np.nan, np.nan), "b": ConfidenceInterval(np.nan, 0.0, 0.0)}
+    ),
     Readings({}),
     Readings([1.0, 2.0]),
 ]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, norm
 
-from dopplerlib import doppler_shift, ekf, ml_start
+from dopplerlib import doppler_shift, ekf, ml_initialize
 from dopplerlib.signal import interpolation, phase
 from dopplerlib.signal.frequency import ml_frequency, ml_frequency_dc
 from dopplerlib.signal.impairments import remove_mean
@@ -57,7 +57,7 @@ def test_amplitude_and_noise_are_those_of_the_fit_that_remains(x, estimator):
     x = x + 3.0
     d = sliding_doppler(x, FS, WINDOW, HOP, estimator)
     constant = estimator is ml_frequency_dc
-    assert d.beside_constant == constant
+    assert d.dc_fitted == constant
     for at in np.ndindex(d.frequency.shape):
         wave = np.exp(2j * np.pi * d.frequency[at] / FS * np.arange(WINDOW))
         basis = np.stack([wave, np.ones(WINDOW)][: 1 + constant], axis=-1)
@@ -173,8 +173,8 @@ def test_five_good_modules_and_a_dead_one_still_find_and_track_the_target(consta
     assert np.isnan(z[:, 2]).all()
     assert np.isfinite(np.delete(z, 2, axis=1)).all()
     near = np.array([0.2, 0.2, 0.2, 0.3, 0.3, 0.3])
-    start = ml_start(z[:8], scenario.array, std[:8], T, (scenario.x0 - near, scenario.x0 + near),
-                     at="last")  # fmt: skip
+    box = scenario.x0 - near, scenario.x0 + near
+    start = ml_initialize(z[:8], scenario.array, std[:8], T, box, at="last")
     track = ekf(z[8:], scenario.array, start.x, start.P, T, 1e-3, std[8:])
     truth = np.concatenate([scenario.x0[:3] + d.time[-1] * scenario.x0[3:], scenario.x0[3:]])
     error = track.x[-1] - truth
@@ -198,9 +198,9 @@ def test_the_measured_ratio_is_right_in_the_mean_and_so_is_the_deviation():
     assert chi2.ppf(FALSE_ALARM / 2, count) < score < chi2.isf(FALSE_ALARM / 2, count) * 1.02
 
 
-@pytest.mark.parametrize(("tag", "first"), [("start", 0), ("center", 249 / 2), ("end", 249)])
-def test_the_time_is_that_of_the_tag(x, tag, first):
-    d = sliding_doppler(x, FS, WINDOW, HOP, tag=tag)
+@pytest.mark.parametrize(("timestamp", "first"), [("start", 0), ("center", 249 / 2), ("end", 249)])
+def test_the_time_is_that_of_the_tag(x, timestamp, first):
+    d = sliding_doppler(x, FS, WINDOW, HOP, timestamp=timestamp)
     np.testing.assert_allclose(d.time, (first + HOP * np.arange(len(d.time))) / FS)
     assert (len(d.time) - 1) * HOP + WINDOW <= N < len(d.time) * HOP + WINDOW
 
@@ -209,9 +209,9 @@ def test_the_frequency_of_a_chirp_is_that_at_the_center():
     """And at the end it is half a window late: chirp * T / 2."""
     x = tone([100.0], FS, N, None, rng=np.random.default_rng(3), chirp=200.0)
     f = {}
-    for tag in ("center", "end"):
-        d = sliding_doppler(x, FS, WINDOW, HOP, tag=tag)
-        f[tag] = d.frequency[:, 0] - (100 + 200 * (d.time - (N - 1) / 2 / FS))
+    for timestamp in ("center", "end"):
+        d = sliding_doppler(x, FS, WINDOW, HOP, timestamp=timestamp)
+        f[timestamp] = d.frequency[:, 0] - (100 + 200 * (d.time - (N - 1) / 2 / FS))
     np.testing.assert_allclose(f["center"], 0, atol=1e-6)
     np.testing.assert_allclose(f["end"], -200 * 249 / 2 / FS, atol=1e-6)
 
@@ -264,7 +264,10 @@ def test_what_makes_no_sense_is_refused_by_name(x):
             "window must be a whole number of at least 4, got 3",
         ),
         ({"hop": 0}, "hop must be a whole number of at least 1, got 0"),
-        ({"tag": "middle"}, "tag must be one of 'start', 'center', 'end', got 'middle'"),
+        (
+            {"timestamp": "middle"},
+            "timestamp must be one of 'start', 'center', 'end', got 'middle'",
+        ),
         ({"band": (0, 2 * FS)}, "band must not be wider than fs = 10000"),
         ({"fs": -1}, "fs must be positive, got -1"),
         ({"x": x[0, 0]}, r"x must have shape \(\.\.\., any, any\), got \(2000,\)"),

@@ -35,7 +35,7 @@ def test_a_box_asks_for_every_component():
     ("function", "arguments", "name"),
     [
         (chi2_gate, (1.0, 0, 0.9), "m"),
-        (chi2_gate, (1.0, 2, 1.0), "probability"),
+        (chi2_gate, (1.0, 2, 1.0), "gate_probability"),
         (chi2_gate, ("a", 2, 0.9), "nis"),
         (fixed_box_gate, ([0.0, 0.0], [1.0, -1.0]), "half_widths"),
         (fixed_box_gate, ([0.0], [1.0, 1.0]), "innovation"),

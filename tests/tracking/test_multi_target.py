@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from dopplerlib import TrackManager, kf
-from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 from dopplerlib.model.polar_radar import polar_radar_h, polar_radar_jacobian
 from dopplerlib.tracking.association import greedy_assign
 from dopplerlib.tracking.multi_target import track_scans
 
 T, K = 0.5, 20
-F, Q = ncv_transition(T, dim=1), wna_process_noise(T, 0.1, dim=1)
+F, Q = ncv_transition(T, dim=1), cwna_process_noise(T, 0.1, dim=1)
 H, R = np.array([[1.0, 0.0]]), np.array([[0.04]])
 MANAGER = TrackManager(hits=2, window=3, delete_after=3)
 
@@ -30,7 +30,7 @@ def positions(rng, begin, speed):
 
 def test_a_single_target_is_filtered_as_by_the_kalman_filter():
     z = positions(np.random.default_rng(31), 0.0, 1.0)
-    (track,) = run([[[one]] for one in z], probability=0.999999)
+    (track,) = run([[[one]] for one in z], gate_probability=0.999999)
     x0, P0 = start(z[:1])
     alone = kf(z[1:, None], F, Q, H, R, x0, P0)
     np.testing.assert_allclose(track.x[1:], alone.x, rtol=1e-10, atol=1e-12)
@@ -49,7 +49,7 @@ def test_two_targets_far_apart_are_each_followed_alone_in_any_order_of_detection
     assert len(tracks) == 2
     for track in tracks:
         mine = int(track.x[0, 0] > 50)
-        (alone,) = run([[[one]] for one in z[:, mine]], probability=0.999)
+        (alone,) = run([[[one]] for one in z[:, mine]], gate_probability=0.999)
         np.testing.assert_allclose(track.x, alone.x, rtol=1e-12)
         taken = [orders[k][track.detection[k]] for k in range(K)]
         assert taken == [mine] * K
@@ -58,7 +58,7 @@ def test_two_targets_far_apart_are_each_followed_alone_in_any_order_of_detection
 def test_a_target_that_disappears_is_predicted_and_then_deleted():
     z = positions(np.random.default_rng(33), 0.0, 1.0)
     scans = [np.array([[one]]) for one in z[:10]] + [np.empty((0, 1))] * 10
-    (track,) = run(scans, probability=0.999999)
+    (track,) = run(scans, gate_probability=0.999999)
     assert track.scan[-1] == 11  # coasts at 10 and 11; the third miss deletes it
     assert track.detection[-2:].tolist() == [-1, -1]
     np.testing.assert_allclose(track.x[-1], F @ F @ track.x[9])
@@ -69,7 +69,7 @@ def test_confirmed_tracks_choose_before_tentative_ones():
     """A newcomer is nearer to the detection, and does not get it."""
     manager = TrackManager(hits=2, window=4, delete_after=5)
     scans = [[[0.0]], [[0.0]], [[1.5]], [[0.9]]]
-    old, *rest = run([np.array(scan) for scan in scans], manager, probability=0.99)
+    old, *rest = run([np.array(scan) for scan in scans], manager, gate_probability=0.99)
     assert old.confirmed[2] and old.detection.tolist() == [0, 0, -1, 0]
     assert all(track.detection[-1] == -1 for track in rest)
 
@@ -102,7 +102,7 @@ def test_a_target_that_passes_behind_the_radar_keeps_its_track():
 
     Turned to the front, all signs of the track turn.
     """
-    F2, Q2 = ncv_transition(T, dim=2), wna_process_noise(T, 0.1, dim=2)
+    F2, Q2 = ncv_transition(T, dim=2), cwna_process_noise(T, 0.1, dim=2)
     deviations = np.array([0.1, 0.01, 0.1])
     truth = np.array([-0.05, 0.01, 5.0, 0.0]) * np.ones((K, 1))
     truth[:, 0] += 0.01 * T * np.arange(K)
@@ -119,7 +119,7 @@ def test_a_target_that_passes_behind_the_radar_keeps_its_track():
     tracks = [
         track_scans(
             z[:, None], F2, Q2, polar_radar_h, polar_radar_jacobian, np.diag(deviations**2),
-            begin, MANAGER, probability=0.999999, wrap=(1,),
+            begin, MANAGER, gate_probability=0.999999, wrap=(1,),
         )
         for z in (front, behind)
     ]  # fmt: skip
@@ -131,8 +131,8 @@ def test_a_target_that_passes_behind_the_radar_keeps_its_track():
 def test_a_detection_with_a_nan_is_not_there_and_the_others_keep_their_numbers():
     rng = np.random.default_rng(37)
     z = positions(rng, 0.0, 1.0)
-    padded = run([[[np.nan], [one], [np.nan]] for one in z], probability=0.999999)
-    plain = run([[[one]] for one in z], probability=0.999999)
+    padded = run([[[np.nan], [one], [np.nan]] for one in z], gate_probability=0.999999)
+    plain = run([[[one]] for one in z], gate_probability=0.999999)
     assert len(padded) == len(plain) == 1
     np.testing.assert_array_equal(padded[0].x, plain[0].x)
     assert (padded[0].detection == 1).all()

@@ -76,7 +76,7 @@ def figure_calls(dl, np):
     time, plane, column = np.arange(5.0), np.ones((5, 2)), np.ones((5, 1))
     line, ring = dl.RadarArray.linear(2, 0.2), dl.RadarArray.ring(6, 0.2)
     x0, sensors = [1.0, 0, 0, -1, 0, 0], np.array([[-0.5, 0.0], [0.5, 0.0]])
-    paper, half = s.mittermaier2016, dl.evaluation.intervals.Estimate(0.5, 0.4, 0.6)
+    paper, half = s.mittermaier2016, dl.evaluation.intervals.ConfidenceInterval(0.5, 0.4, 0.6)
     world, path = paper.scenario(), paper.scenario().truth
     two = np.ones((2, 2))
     errors = rng.uniform(0.1, 1.0, (2, 20))

@@ -6,7 +6,7 @@ from ... import _checks
 from ...estimation import gaussian, recursion
 from ...estimation.linear_kalman import kf
 from ...estimation.radial_velocity import radial_velocity_update
-from ...evaluation.intervals import share_interval
+from ...evaluation.intervals import proportion_interval
 from ...replication.verdicts import Draws, Readings
 from ._claims_formulas import settings_and_formulas
 from .measures import departure, distance_error, usable_range_of_each
@@ -255,7 +255,7 @@ def stand_in_evidence(*, rng, runs=800):
         "raw-near": mean(raw, (y >= 2) & (y <= 3)),
         "raw-worst": Draws(np.nanmax(raw[:, before], axis=1)),
         "error-at-four": mean(off, np.abs(y - 4) < 0.2),
-        "nearest-of-validated": share_interval(np.concatenate(dropped)),
+        "nearest-of-validated": proportion_interval(np.concatenate(dropped)),
     }
 
 
@@ -285,8 +285,8 @@ def gate_on_a_walk(runs, rng):
     errors = [np.mean((d - w.ranges[0, at, 0]) ** 2, axis=1) for d in paths]
     return Readings(
         {
-            "more even": share_interval(bends[0] < bends[1]),
-            "smaller error": share_interval(errors[0] < errors[1]),
+            "more even": proportion_interval(bends[0] < bends[1]),
+            "smaller error": proportion_interval(errors[0] < errors[1]),
         }
     )
 

@@ -25,7 +25,7 @@ def usable_ranges(records, tracks, *, rng):
 
     Returns
     -------
-    dict of str to Estimate
+    dict of str to ConfidenceInterval
         In m; infinite if the error stays below the limit.
     """
     return {
@@ -52,7 +52,7 @@ def late_radar(offsets, runs, *, rng, window=(25.0, 30.0)):
 
     Returns
     -------
-    dict of str to list of Estimate
+    dict of str to list of ConfidenceInterval
         Root mean square errors in m by tracker, one for each offset, with one scan a second.
         Errors are taken at the time of the second radar's measurement if the tracker knows it,
         and of the first one's if not.
@@ -104,7 +104,7 @@ def baseline_sweep(baselines, runs, *, rng, at=28.0, half_width=2.0):
 
     Returns
     -------
-    dict of str to list of Estimate
+    dict of str to list of ConfidenceInterval
         Root mean square errors in m by tracker, one for each baseline, with one scan a second and
         "modern" settings.
     """
@@ -143,7 +143,7 @@ def refused_scans(starts, densities, runs, *, rng, duration=10.0, floor=(0.0, 0.
 
     Returns
     -------
-    list of list of Estimate
+    list of list of ConfidenceInterval
         Shares of the scans of radar 2 that the gate dropped, for each start and density.
     """
     starts, densities = (

@@ -5,7 +5,7 @@ import numpy as np
 from ... import _checks
 from ...estimation import gaussian, recursion
 from ...estimation.nonlinear_kalman import ekf_records
-from ...model.kinematics import ncv_transition, wna_process_noise
+from ...model.motion import cwna_process_noise, ncv_transition
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...tracking.bilateration import bilaterate
 from ...tracking.gates import chi2_gate, fixed_box_gate
@@ -158,7 +158,7 @@ def _motion(dt, q):
         return np.eye(4), np.zeros((4, 4))
     return (
         ncv_transition(dt, dim=2, order="derivative"),
-        wna_process_noise(dt, q, dim=2, order="derivative"),
+        cwna_process_noise(dt, q, dim=2, order="derivative"),
     )
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from ... import _checks
 from ..._data import data, read_toml
 from ..._records import record
-from ...model.kinematics import wna_process_noise
-from ...model.ranging_noise import linear_snr, resolution_deviation
+from ...model.motion import cwna_process_noise
+from ...model.ranging_noise import linear_snr, range_std
 
 data_file = partial(data, "asheim2015")
 SETTINGS = ("text", "code", "modern")
@@ -138,7 +138,7 @@ def deviations(d, law=None):
         In m and m/s.
     """
     snr_db = (law or snr)(d)
-    return np.stack([resolution_deviation(res, snr_db) for res in _resolutions()], axis=-1)
+    return np.stack([range_std(res, snr_db) for res in _resolutions()], axis=-1)
 
 
 def settings(name, T=None, *, q=None, floor=None, gate="own"):
@@ -180,7 +180,7 @@ def settings(name, T=None, *, q=None, floor=None, gate="own"):
     own = f[name]
     box = tuple(np.sqrt(f["c"] * f[sigma]) for sigma in ("sigma_range", "sigma_velocity"))
     if name == "modern":
-        Q = wna_process_noise(T, own["q"] if q is None else q, dim=1)
+        Q = cwna_process_noise(T, own["q"] if q is None else q, dim=1)
         variances = None
         floor = (own["floor_range"], own["floor_velocity"]) if floor is None else floor
     else:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ... import _checks
-from ...evaluation.intervals import Estimate
+from ...evaluation.intervals import ConfidenceInterval
 from .measures import _first_above, _near, _squares
 
 
@@ -25,7 +25,7 @@ def over_runs(statistic, *arrays, rng, resamples=400, confidence=0.95):
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
         Its interval is that between percentiles of the resampled statistic.
 
     Notes
@@ -52,7 +52,7 @@ def rmse_interval(error, time, at, half_width=0.5, *, rng):
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
     """
     sums = [part.sum(axis=1) for part in _squares(_near(error, time, at, half_width))]
     return over_runs(lambda s, n: np.sqrt(s.sum() / n.sum()), *sums, rng=rng)
@@ -72,7 +72,7 @@ def rmse_ratio(a, b, time, at, half_width=0.5, *, rng):
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
     """
     sums = [part.sum(axis=1) for e in (a, b) for part in _squares(_near(e, time, at, half_width))]
     return over_runs(
@@ -96,7 +96,7 @@ def usable_interval(error, time, distance, *, rng, resamples=400, confidence=0.9
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
         In m; infinite where the error stays below the limit to the end.
     """
     (value,), (values,) = _resampled_ranges([error], time, distance, rng, resamples)
@@ -121,7 +121,7 @@ def usable_ratio(a, b, time, distance, *, rng, resamples=400, confidence=0.95):
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
         A range beyond the record counts as the last distance.
     """
     found = _resampled_ranges([a, b], time, distance, rng, resamples)
@@ -152,4 +152,4 @@ def _percentiles(value, values, confidence):
     tail = 50 * (1 - _checks.probability("confidence", confidence))
     # "lower": an infinite value next to a finite one must not make their mean NaN.
     low, high = np.percentile(values, [tail, 100 - tail], method="lower")
-    return Estimate(float(value), float(low), float(high))
+    return ConfidenceInterval(float(value), float(low), float(high))

@@ -4,7 +4,7 @@ import numpy as np
 
 from ... import _checks
 from ..._records import record
-from ...model.kinematics import ncv_transition
+from ...model.motion import ncv_transition
 from ...model.polar_radar import polar_radar_h, polar_radar_jacobian
 from ...tracking.association import greedy_assign
 from ...tracking.gates import fixed_box_gate

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ... import _checks
-from ...evaluation.intervals import mean_interval, quantile_interval, share_interval
+from ...evaluation.intervals import mean_interval, proportion_interval, quantile_interval
 from ...model.polar_radar import polar_radar_jacobian
 from ...replication.verdicts import Readings
 from ...signal import fsk, waveforms
@@ -124,8 +124,8 @@ def _positions(rng):
         ),
         "varying-speed": Readings(
             {
-                f"w = {s.w:g} m/s": share_interval(calm.speed_worse_when_it_varies()),
-                "w = 0.1 m/s": share_interval(agile.speed_worse_when_it_varies()),
+                f"w = {s.w:g} m/s": proportion_interval(calm.speed_worse_when_it_varies()),
+                "w = 0.1 m/s": proportion_interval(agile.speed_worse_when_it_varies()),
             }
         ),
     }
@@ -183,8 +183,8 @@ def _scheme():
         "false-candidates": mean_interval(wrong),
         "false-tracks": Readings(
             {
-                "4 hits of 6": share_interval(plain[9]["false"] > 0),
-                "8 hits of 10": share_interval(found[9, "8 hits of 10"]["false"] > 0),
+                "4 hits of 6": proportion_interval(plain[9]["false"] > 0),
+                "8 hits of 10": proportion_interval(found[9, "8 hits of 10"]["false"] > 0),
             }
         ),
         "target-tracked": Readings(

@@ -5,7 +5,7 @@ import numpy as np
 from ... import _checks
 from ..._records import record
 from ...estimation import recursion
-from ...model.kinematics import ncv_transition
+from ...model.motion import ncv_transition
 from .published import settings
 from .tracking import gain_sequence, measure
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...estimation.steady_state import steady_state_gain, steady_state_lag
-from ...model.kinematics import ncv_transition
+from ...model.motion import ncv_transition
 from .published import settings
 
 

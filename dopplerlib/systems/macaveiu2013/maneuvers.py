@@ -5,7 +5,7 @@ import numpy as np
 from ...estimation.imm import imm
 from ...estimation.linear_kalman import kf
 from ...estimation.smoother import rts_smooth
-from ...model.kinematics import nca_transition, ncv_transition, wnj_process_noise
+from ...model.motion import cwnj_process_noise, nca_transition, ncv_transition
 from .published import settings
 
 STAY = 0.99  # probability that a model stays for one step; ours: a change every 100 steps, 3.8 s
@@ -57,7 +57,7 @@ def ca(z, q, a_max, s=None):
     H[[0, 1, 2, 3], [0, 1, 3, 4]] = 1
     x0 = z[:, 0] @ H
     P0 = H.T @ s.E_z @ H + np.diag([0, 0, a_max**2] * 2)
-    track = kf(z[:, 1:], nca_transition(s.T), wnj_process_noise(s.T, q), H, s.E_z, x0, P0)
+    track = kf(z[:, 1:], nca_transition(s.T), cwnj_process_noise(s.T, q), H, s.E_z, x0, P0)
     return np.concatenate([z[:, :1], track.x @ H.T], axis=1)
 
 

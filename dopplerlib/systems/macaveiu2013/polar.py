@@ -6,7 +6,7 @@ from ... import _checks
 from ...estimation import gaussian, recursion
 from ...estimation.extended_update import linearized
 from ...estimation.track import Track
-from ...model.kinematics import ncv_transition
+from ...model.motion import ncv_transition
 from ...model.polar_radar import polar_position, polar_radar_h, polar_radar_jacobian
 from .published import sensor, settings
 

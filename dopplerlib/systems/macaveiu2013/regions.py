@@ -6,8 +6,8 @@ import numpy as np
 
 from ... import _checks
 from ..._records import record
-from ...evaluation.intervals import share_interval
-from ...model.kinematics import ncv_transition
+from ...evaluation.intervals import proportion_interval
+from ...model.motion import ncv_transition
 from .published import paths, settings
 from .tracking import gain_sequence, measure
 
@@ -180,7 +180,7 @@ def claim_map(rows, columns, runs, *, rng, s=None):
     for i, j in np.ndindex(shape):
         here = s.with_(**{row: heights[i], column: widths[j]})
         for name, true in _scores(noise, here).by_claim().items():
-            share = share_interval(true)
+            share = proportion_interval(true)
             shares[name][:, i, j] = share.value, share.low, share.high
     return shares
 

@@ -7,7 +7,7 @@ from ..._records import record
 from ...estimation.linear_kalman import kf
 from ...estimation.track import Track
 from ...evaluation.consistency import nees
-from ...model.kinematics import ncv_transition
+from ...model.motion import ncv_transition
 from .published import Path2D, settings
 
 

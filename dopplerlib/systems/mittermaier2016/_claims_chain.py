@@ -45,7 +45,7 @@ def _tracks(rng):
     s = scenario()
     level = 10 * np.log10(_CN0 / 2000.0)
     iq = received(_RUNS, rng=rng, fs=2000.0, snr_db=level, factor=1)
-    found, late = track_iq(iq), track_iq(iq, tag="end")
+    found, late = track_iq(iq), track_iq(iq, timestamp="end")
     end = float(s.time[-1])
     error = 100 * np.abs(found.at(end)[0][:, 0] - s.truth[-1, 0])
     nis, nis_late = (judged(track, (end,)).nis.mean() for track in (found, late))

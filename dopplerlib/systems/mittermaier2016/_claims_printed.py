@@ -34,7 +34,7 @@ def _sensors():
         "unit-of-acceleration": -2.0,  # the power of the second
         "state-from-constant": float(np.linalg.matrix_rank(doppler_jacobian(s.x0, s.array))),
         "poor-observability": float(
-            np.sqrt(np.trace(crlb(s.x0, s.array, s.sigma_f, 10, s.T, "moving")[:3, :3]))
+            np.sqrt(np.trace(crlb(s.x0, s.array, s.sigma_f, 10, s.T, "constant_velocity")[:3, :3]))
         ),
         "many-measurements": float(samples_needed(0.01)),
     }

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...evaluation.intervals import Estimate, mean_interval, share_interval
+from ...evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
 from ...replication.verdicts import Readings
 from ...signal.frequency import ml_frequency
 from ...signal.interpolation import peak_bin
@@ -47,7 +47,7 @@ def signal_evidence(rng):
             {name: mean_interval((e / bound) ** 2) for name, (e, bound) in errors.items()}
         ),
         "signal-depends": _dependence(rng.spawn(3)),
-        "signal-normal": share_interval(np.abs(normal[0]) < 1.96 * normal[1]),
+        "signal-normal": proportion_interval(np.abs(normal[0]) < 1.96 * normal[1]),
         "signal-variance": Readings(
             {
                 f"{1e3 * window:.0f} ms": float(
@@ -86,7 +86,7 @@ def _ratio(some, others):
     one, two = mean_interval(some), mean_interval(others)
     spread = np.hypot((one.high - one.value) / one.value, (two.high - two.value) / two.value)
     ratio = one.value / two.value
-    return Estimate(ratio, float(ratio * np.exp(-spread)), float(ratio * np.exp(spread)))
+    return ConfidenceInterval(ratio, float(ratio * np.exp(-spread)), float(ratio * np.exp(spread)))
 
 
 def _errors(estimator, n, rng, snr_db=_SNR_DB):

@@ -2,7 +2,12 @@
 
 import numpy as np
 
-from ...evaluation.intervals import Estimate, mean_interval, quantile_interval, share_interval
+from ...evaluation.intervals import (
+    ConfidenceInterval,
+    mean_interval,
+    proportion_interval,
+    quantile_interval,
+)
 from ...replication.verdicts import Draws, Readings
 from .error_map import figure3, figure3_bound, shares_above
 from .map_readings import figure3_readings
@@ -12,7 +17,7 @@ from .start import table2_starts
 _DRAWS = 3  # of each of the 1521 places of Fig 3
 _REDRAWN = 500
 _STARTS = 2000
-_LIKELIHOODS = ("static", "moving")
+_LIKELIHOODS = ("stationary", "constant_velocity")
 
 
 def start_evidence(rng):
@@ -39,7 +44,7 @@ def _maps(rng):
     }
     behind, error = (float(getattr(readings["as printed"], k)) for k in ("behind", "deviation"))
     return {
-        "figure3-as-printed": Estimate(behind, behind - error, behind + error),
+        "figure3-as-printed": ConfidenceInterval(behind, behind - error, behind + error),
         "figure3-areas": _corners(one.position, p),
         "figure3-left-share": _share(one, p, 0, children[5]),
         "figure3-right-share": Readings(
@@ -58,7 +63,7 @@ def _corners(error, p):
     here = np.where((y > 0)[..., None], error, error[::-1])
     there = np.where((y > 0)[..., None], error[::-1], error)
     ratio = mean_interval(np.log(here / there)[corner].ravel())
-    return Estimate(*(float(np.exp(v)) for v in (ratio.value, ratio.low, ratio.high)))
+    return ConfidenceInterval(*(float(np.exp(v)) for v in (ratio.value, ratio.low, ratio.high)))
 
 
 def _share(error_map, p, panel, rng):
@@ -75,7 +80,7 @@ def _improved(few, many):
     """Return the share of places at which the median error of our draws is smaller."""
     few, many = (np.median(m.position, axis=-1) for m in (few, many))
     there = ~np.isnan(few)
-    return share_interval((many < few)[there])
+    return proportion_interval((many < few)[there])
 
 
 def _ratio(longer, shorter):
@@ -89,9 +94,9 @@ def _bounds():
     p = published_figure3()
     off_line = np.abs(p.x) > 1e-9  # on it the sensors cannot see the distance
     kinds = {
-        "one sample": (1, "static"),
-        "ten samples, static likelihood": (10, "static"),
-        "ten samples, moving likelihood": (10, "moving"),
+        "one sample": (1, "stationary"),
+        "ten samples, static likelihood": (10, "stationary"),
+        "ten samples, moving likelihood": (10, "constant_velocity"),
     }
     maps = {}
     for name, (samples, likelihood) in kinds.items():
@@ -123,8 +128,10 @@ def _starts(rng):
     return {
         "start-position": Readings({n: Draws(s.position) for n, s in found.items()}),
         "start-velocity": Readings({n: Draws(s.velocity) for n, s in found.items()}),
-        "start-reliable": Readings({n: share_interval(s.position < 0.1) for n, s in found.items()}),
+        "start-reliable": Readings(
+            {n: proportion_interval(s.position < 0.1) for n, s in found.items()}
+        ),
         "start-not-convex": Readings(
-            {name: share_interval(hits) for name, hits in zip(found, second, strict=True)}
+            {name: proportion_interval(hits) for name, hits in zip(found, second, strict=True)}
         ),
     }

@@ -8,7 +8,12 @@ import numpy as np
 from ...estimation.extended_kalman import ekf
 from ...evaluation.bounds import crlb
 from ...evaluation.consistency import chi2_interval, nees, nis
-from ...evaluation.intervals import Estimate, mean_interval, quantile_interval, share_interval
+from ...evaluation.intervals import (
+    ConfidenceInterval,
+    mean_interval,
+    proportion_interval,
+    quantile_interval,
+)
 from ...model.doppler import doppler_jacobian, doppler_shift
 from ...model.motion import constant_velocity
 from ...model.radar_array import RadarArray
@@ -75,15 +80,15 @@ def _of_any_run(result):
     return {
         "nis-average": Draws(average),
         "nis-inside": Draws(100 * ((lower <= value) & (value <= upper)).mean(axis=1)),
-        "nis-matches": share_interval((low <= average) & (average <= high)),
+        "nis-matches": proportion_interval((low <= average) & (average <= high)),
         "innovation-low": Draws(innovation.min(axis=1)),
         "innovation-high": Draws(innovation.max(axis=1)),
         "final-quoted": Draws(np.linalg.norm(error[:, -1], axis=-1)),
         "range-median": quantile_interval(error[:, -1, 0]),
-        "range-most": share_interval(error[:, -1, 0] < 1),
-        "z-worst": share_interval(mean_error[:, :3].argmax(axis=1) == 2),
-        "vx-best": share_interval(mean_error[:, 3:].argmin(axis=1) == 0),
-        "vy-before-vz": share_interval(mean_error[:, 4] < mean_error[:, 5]),
+        "range-most": proportion_interval(error[:, -1, 0] < 1),
+        "z-worst": proportion_interval(mean_error[:, :3].argmax(axis=1) == 2),
+        "vx-best": proportion_interval(mean_error[:, 3:].argmin(axis=1) == 0),
+        "vy-before-vz": proportion_interval(mean_error[:, 4] < mean_error[:, 5]),
         "decreasing": _least_decrease(np.linalg.norm(error, axis=-1)),
     }
 
@@ -120,9 +125,9 @@ def _least_decrease(error):
 def _tracked(z, array, start, P0):
     """Return the track from a start at the first sample, without a gate."""
     s = scenario()
-    F, _ = constant_velocity(s.T, s.sigma_p)
+    F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.linalg.solve(F, start[..., None])[..., 0]
-    return ekf(z, array, before, P0, s.T, s.sigma_p, s.sigma_f, keep=())
+    return ekf(z, array, before, P0, s.T, s.sigma_a, s.sigma_f, keep=())
 
 
 def _sizes(rng, runs=500):
@@ -131,7 +136,7 @@ def _sizes(rng, runs=500):
     record, again, noise = rng.spawn(3)
     truth, z = simulate(s, runs, rng=record)
     starts = _starts() | {
-        "starts of our own": table2_starts(runs, rng=again, likelihood="static").start.x
+        "starts of our own": table2_starts(runs, rng=again, likelihood="stationary").start.x
     }
 
     def errors(start, P0):
@@ -161,10 +166,15 @@ def _rotation(rng):
         truth, z = simulate(one, 1500, rng=child)
         track = _tracked(z, one.array, table2().x_ml, s.P0)
         errors.append(np.log(np.abs(track.x - truth)[..., 2].mean(axis=1)))
-        bounds.append(crlb(s.x0, one.array, s.sigma_f, s.samples, s.T, "moving")[2, 2] ** 0.5)
+        bounds.append(
+            crlb(s.x0, one.array, s.sigma_f, s.samples, s.T, "constant_velocity")[2, 2] ** 0.5
+        )
     change = mean_interval(errors[0] - errors[1])
     ratio = (float(np.exp(number)) for number in (change.value, change.low, change.high))
-    readings = {"error of our runs": Estimate(*ratio), "bound": float(bounds[0] / bounds[1])}
+    readings = {
+        "error of our runs": ConfidenceInterval(*ratio),
+        "bound": float(bounds[0] / bounds[1]),
+    }
     return {"rotation": Readings(readings)}
 
 
@@ -205,7 +215,7 @@ def _updates(rng, runs=200):
     return {
         "tangent-first": quantile_interval(_neglected(start, s.P0, rng)),
         "tangent-later": quantile_interval(_neglected(x, P, rng)),
-        "filter-consistent": share_interval((lower <= value) & (value <= upper)),
+        "filter-consistent": proportion_interval((lower <= value) & (value <= upper)),
     }
 
 

@@ -26,9 +26,9 @@ def switched_ekf(
     x0,
     P0,
     T,
-    sigma_p,
+    sigma_a,
     sigma_f,
-    noise="common",
+    noise="shared",
     *,
     path=None,
     tangent_at="estimate",
@@ -47,10 +47,10 @@ def switched_ekf(
         State one interval before the first sample, in m and m/s.
     P0 : array_like, shape (6, 6)
         Its covariance.
-    T, sigma_p, sigma_f : float
+    T, sigma_a, sigma_f : float
         Sampling interval in s, standard deviations of the acceleration in m/s^2 and of a
         measurement in Hz.
-    noise : {"common", "independent"}
+    noise : {"shared", "per_axis"}
         See `constant_velocity`.
     path : array_like, shape (K, 6), optional
         A path known to the experimenter, usually the true one. Needed by the next two switches.
@@ -89,7 +89,7 @@ def switched_ekf(
         shift, slope = doppler_shift(path, array), doppler_jacobian(path, array)
     elif tangent_at == "path" or curvature != 1:
         raise ValueError(f"path must be given with {tangent_at=} and {curvature=}, got None")
-    F, Q = constant_velocity(T, sigma_p, noise)
+    F, Q = constant_velocity(T, sigma_a, noise)
     R = sigma_f**2 * np.eye(len(array))
     x = np.broadcast_to(x0, (len(z), 6))
     eye = np.eye(len(array))
@@ -158,7 +158,7 @@ class Consistency:
 
 
 def consistency_runs(
-    runs, *, rng, keep=None, samples=None, start=None, P0=None, noise="common", sigma_p=None,
+    runs, *, rng, keep=None, samples=None, start=None, P0=None, noise="shared", sigma_a=None,
     sigma_f=None, chunk=500, **switches,
 ):  # fmt: skip
     """Run the simulation example without a gate, and compare its errors with their covariances.
@@ -177,9 +177,9 @@ def consistency_runs(
         Estimate at the first sample; that of Table 2 if None.
     P0 : array_like, shape (6, 6), optional
         Its covariance; that of the scenario, 0.1 I, if None.
-    noise : {"common", "independent"}
+    noise : {"shared", "per_axis"}
         See `constant_velocity`.
-    sigma_p : float, optional
+    sigma_a : float, optional
         Standard deviation of the push that the filter believes, in m/s^2; that of the scenario if
         None.
     sigma_f : array_like, broadcast to (K, N), optional
@@ -205,9 +205,9 @@ def consistency_runs(
     runs = _checks.whole_number("runs", runs)
     keep = np.arange(s.samples) if keep is None else np.asarray(keep)
     start = _checks.finite("start", table2().x_ml if start is None else start, (6,))
-    F, _ = constant_velocity(s.T, s.sigma_p)
+    F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.broadcast_to(np.linalg.solve(F, start[..., None])[..., 0], (runs, 6))
-    settings = (s.P0 if P0 is None else P0, s.T, s.sigma_p if sigma_p is None else sigma_p)
+    settings = (s.P0 if P0 is None else P0, s.T, s.sigma_a if sigma_a is None else sigma_a)
     sigma_f = s.sigma_f if sigma_f is None else sigma_f
     parts = []
     for first in range(0, runs, chunk):

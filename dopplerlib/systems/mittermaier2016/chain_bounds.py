@@ -8,12 +8,12 @@ from ...signal.laws import crlb_frequency_std
 from .published import scenario
 
 
-def position_bound(moment, window, cn0, *, first=0.0, samples_per_second=100e3):
-    """Return how well the position at a moment can be known from windows side by side.
+def position_bound(time, window, cn0, *, first=0.0, samples_per_second=100e3):
+    """Return how well the position at a time can be known from windows side by side.
 
     Parameters
     ----------
-    moment : float
+    time : float
         In s; the windows end there at the latest.
     window : float
         Length of a window in s.
@@ -47,24 +47,24 @@ def position_bound(moment, window, cn0, *, first=0.0, samples_per_second=100e3):
     s = scenario()
     window = _checks.positive_number("window", window)
     cn0 = _checks.positive_number("cn0", cn0)
-    K = int((_checks.one_number("moment", moment) - first) / window + 1e-9)
+    K = int((_checks.one_number("time", time) - first) / window + 1e-9)
     if K < 1:
-        raise ValueError(f"moment must leave room for a window of {window} s, got {moment}")
+        raise ValueError(f"time must leave room for a window of {window} s, got {time}")
     n = max(2, round(window * samples_per_second))
     sigma = crlb_frequency_std(cn0 * window / n, n, n / window)
     middle, F = first + window / 2, np.eye(6)
     F[:3, 3:] = middle * np.eye(3)
-    P = crlb(F @ s.x0, s.array, sigma, K, window, "moving")
-    F[:3, 3:] = (moment - middle) * np.eye(3)
+    P = crlb(F @ s.x0, s.array, sigma, K, window, "constant_velocity")
+    F[:3, 3:] = (time - middle) * np.eye(3)
     return (F @ P @ F.T)[:3, :3]
 
 
-def position_bound_iq(moment, cn0, *, first=0.0, samples_per_second=2000.0):
-    """Return how well the position at a moment can be known from the IQ samples up to it.
+def position_bound_iq(time, cn0, *, first=0.0, samples_per_second=2000.0):
+    """Return how well the position at a time can be known from the IQ samples up to it.
 
     Parameters
     ----------
-    moment : float
+    time : float
         In s; the samples end there.
     cn0 : float
         Power of an echo over the noise power in 1 Hz, in Hz.
@@ -94,15 +94,15 @@ def position_bound_iq(moment, cn0, *, first=0.0, samples_per_second=2000.0):
     s = scenario()
     cn0 = _checks.positive_number("cn0", cn0)
     fs = _checks.positive_number("samples_per_second", samples_per_second)
-    length = _checks.one_number("moment", moment) - _checks.one_number("first", first)
+    length = _checks.one_number("time", time) - _checks.one_number("first", first)
     if not length * fs >= 3:
-        raise ValueError(f"moment must leave room for three samples, got {moment}")
+        raise ValueError(f"time must leave room for three samples, got {time}")
     t = first + (np.arange(round(length * fs)) + 0.5) / fs
     path = s.x0[:3] + t[:, None] * s.x0[3:]
     away = path - s.array.positions[:, None]  # (N, n, 3)
     toward = away / np.linalg.norm(away, axis=-1, keepdims=True)
-    # The state at the moment is unknown: a velocity moves the position of earlier samples back.
-    slopes = np.concatenate([toward, (t[:, None] - moment) * toward], axis=-1)
+    # The state at the time is unknown: a velocity moves the position of earlier samples back.
+    slopes = np.concatenate([toward, (t[:, None] - time) * toward], axis=-1)
     slopes *= 4 * np.pi / s.array.wavelength
     slopes = (slopes - slopes.mean(axis=1, keepdims=True)).reshape(-1, 6)
     scale = np.linalg.norm(slopes, axis=0)

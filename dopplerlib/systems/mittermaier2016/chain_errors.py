@@ -19,14 +19,14 @@ class Judged:
     nis : ndarray, shape (runs,)
         Normalized innovation squared of the hypothesis that counts in the end, averaged over the
         samples of the filter.
-    memory : ndarray, shape (runs,)
+    lag1_autocorrelation : ndarray, shape (runs,)
         Autocorrelation of the innovations, see `IqTrack`.
     """
 
     error: np.ndarray
     nees: np.ndarray
     nis: np.ndarray
-    memory: np.ndarray
+    lag1_autocorrelation: np.ndarray
 
 
 def judged(found, moments=(0.5, 1.0), carry=True):
@@ -60,4 +60,4 @@ def judged(found, moments=(0.5, 1.0), carry=True):
         squared.append(np.sum(off * np.linalg.solve(P, off[..., None])[..., 0], axis=-1))
     rows = np.arange(len(chosen))
     nis = found.nis[rows, chosen].mean(axis=-1)
-    return Judged(np.array(error), np.array(squared), nis, found.memory)
+    return Judged(np.array(error), np.array(squared), nis, found.lag1_autocorrelation)

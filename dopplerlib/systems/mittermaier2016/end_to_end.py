@@ -18,10 +18,10 @@ def track_iq(
     iq,
     *,
     window=0.025,
-    tag="center",
+    timestamp="center",
     subtract_delay=True,
     start=0.3,
-    sigma_p=None,
+    sigma_a=None,
     search="quarters",
     **settings,
 ):
@@ -33,11 +33,11 @@ def track_iq(
         Samples of the paper's array.
     window, start : float
         See `dopplerlib.chain.track.track_iq`.
-    tag : {"center", "end"}
+    timestamp : {"center", "end"}
         To which moment of its window a Doppler shift is taken to belong.
     subtract_delay : bool
         Whether the group delay of the low-pass is taken off the times.
-    sigma_p : float, optional
+    sigma_a : float, optional
         Standard deviation of the acceleration in m/s^2, for one millisecond; that of the scenario
         if None. For another hop it is scaled, so that the velocity wanders as far in a second.
     search : {"quarters", "room"}
@@ -66,16 +66,18 @@ def track_iq(
     that are delayed by less than they are.
     """
     _checks.instance("iq", iq, Baseband)
-    _checks.one_of("tag", tag, ("center", "end"))
+    _checks.one_of("timestamp", timestamp, ("center", "end"))
     s = scenario()
     delay = iq.delay if subtract_delay else 0.0
-    if tag == "end":
+    if timestamp == "end":
         delay -= (round(_checks.moderate_number("window", window) * iq.fs) - 1) / 2 / iq.fs
     return track.track_iq(
         replace(iq, delay=delay),
         _room(),
         speed_limit=signal_chain()["speed_limit_m_s"],
-        sigma_p=_checks.positive_number("sigma_p", s.sigma_p if sigma_p is None else sigma_p)
+        velocity_random_walk=_checks.positive_number(
+            "sigma_a", s.sigma_a if sigma_a is None else sigma_a
+        )
         * np.sqrt(s.T),
         window=window,
         start=start,

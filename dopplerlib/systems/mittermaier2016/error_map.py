@@ -4,7 +4,7 @@ import numpy as np
 
 from ... import _checks
 from ..._records import record
-from ...estimation.maximum_likelihood import ml_start
+from ...estimation.maximum_likelihood import ml_initialize
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_shift
 from .published import published_figure3
@@ -33,7 +33,7 @@ class ErrorMap:
         return np.hypot(self.position, self.velocity)
 
 
-def figure3(draws, *, rng, samples=1, likelihood="static", room=2.0, velocity=None):
+def figure3(draws, *, rng, samples=1, likelihood="stationary", room=2.0, velocity=None):
     """Estimate the state of a target at every place of Fig 3.
 
     Parameters
@@ -44,8 +44,8 @@ def figure3(draws, *, rng, samples=1, likelihood="static", room=2.0, velocity=No
         Source of the noise; every draw has a child of its own.
     samples : int
         Number of Doppler samples of the moving target.
-    likelihood : {"static", "moving"}
-        What the estimator assumes, see `ml_start`; without effect for one sample.
+    likelihood : {"stationary", "constant_velocity"}
+        What the estimator assumes, see `ml_initialize`; without effect for one sample.
     room : float
         Half the side in m of the square that is searched. Not stated in the paper.
     velocity : array_like, shape (3,), optional
@@ -60,7 +60,7 @@ def figure3(draws, *, rng, samples=1, likelihood="static", room=2.0, velocity=No
     ------
     ValueError
         If an argument has the wrong shape, is not finite and positive where it has to be, or is
-        refused by `ml_start`.
+        refused by `ml_initialize`.
 
     Notes
     -----
@@ -90,7 +90,7 @@ def figure3(draws, *, rng, samples=1, likelihood="static", room=2.0, velocity=No
         here = clear & ((states[:, 0] >= 0) == ahead)
         side = np.where(np.arange(6) == 0, 0, low if ahead else high)
         box = (side, high) if ahead else (low, side)
-        found = ml_start(z[here], p.array, p.sigma_f, p.T, box, likelihood).x
+        found = ml_initialize(z[here], p.array, p.sigma_f, p.T, box, likelihood).x
         error[here] = found - states[here, None]
     shape = (len(p.x), len(p.y), draws)
     return ErrorMap(
@@ -101,7 +101,7 @@ def figure3(draws, *, rng, samples=1, likelihood="static", room=2.0, velocity=No
     )
 
 
-def figure3_bound(*, samples=1, likelihood="static", velocity=None):
+def figure3_bound(*, samples=1, likelihood="stationary", velocity=None):
     """Return the least root mean square position error at every place of Fig 3.
 
     Parameters
@@ -121,7 +121,7 @@ def figure3_bound(*, samples=1, likelihood="static", velocity=None):
     bound = np.full(len(states), np.nan)
     P = crlb(states[clear], p.array, p.sigma_f, samples, p.T, likelihood, free=_IN_PLANE)
     bound[clear] = np.sqrt(P[:, 0, 0] + P[:, 1, 1])
-    if samples == 1 or likelihood == "static":
+    if samples == 1 or likelihood == "stationary":
         # Exactly singular on the line of the sensors, where rounding leaves 1e-16 of two columns.
         bound[clear & (states[:, 0] == 0)] = np.inf
     return bound.reshape(len(p.x), len(p.y))

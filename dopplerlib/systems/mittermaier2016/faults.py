@@ -29,7 +29,7 @@ def linear_world(runs, *, rng):
     -------
     truth : ndarray, shape (runs, K, 6)
         True states: the start has the covariance of the scenario, 0.1 I, and each axis is pushed
-        independently with `sigma_p`.
+        independently with `sigma_a`.
     z : ndarray, shape (runs, K, N)
         What the tangent at the paper's path makes of them, with noise, in Hz.
 
@@ -41,8 +41,8 @@ def linear_world(runs, *, rng):
     runs = _checks.whole_number("runs", runs)
     _checks.generator("rng", rng)
     s = scenario()
-    F, _ = constant_velocity(s.T, s.sigma_p)
-    pushes = s.sigma_p * rng.standard_normal((runs, s.samples, 3))
+    F, _ = constant_velocity(s.T, s.sigma_a)
+    pushes = s.sigma_a * rng.standard_normal((runs, s.samples, 3))
     push = np.hstack([s.T**2 / 2 * np.eye(3), s.T * np.eye(3)])
 
     def step(k, state):
@@ -57,16 +57,16 @@ def linear_world(runs, *, rng):
     return s.truth + away, z
 
 
-def linear_filter(z, *, noise="independent", sigma_f=None, sigma_p=None, P0=None, start=None):
+def linear_filter(z, *, noise="per_axis", sigma_f=None, sigma_a=None, P0=None, start=None):
     """Track in the linear world.
 
     Parameters
     ----------
     z : ndarray, shape (runs, K, N)
         Measurements of `linear_world`.
-    noise : {"common", "independent"}
-        Process noise; "independent" is right.
-    sigma_f, sigma_p : float, optional
+    noise : {"shared", "per_axis"}
+        Process noise; "per_axis" is right.
+    sigma_f, sigma_a : float, optional
         Standard deviations of the measurement in Hz and of the push in m/s^2; right if None.
     P0 : ndarray, shape (6, 6), optional
         Covariance of the start; right if None.
@@ -79,10 +79,10 @@ def linear_filter(z, *, noise="independent", sigma_f=None, sigma_p=None, P0=None
         With P and S of leading axis 1.
     """
     s = scenario()
-    F, _ = constant_velocity(s.T, s.sigma_p)
+    F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.linalg.solve(F, s.x0) + (0 if start is None else start)
     return switched_ekf(
-        z, s.array, before, s.P0 if P0 is None else P0, s.T, sigma_p or s.sigma_p,
+        z, s.array, before, s.P0 if P0 is None else P0, s.T, sigma_a or s.sigma_a,
         sigma_f or s.sigma_f, noise, path=s.truth, tangent_at="path", curvature=0.0,
     )  # fmt: skip
 
@@ -123,11 +123,11 @@ def faulty_filters(truth, z):
         "noise has a memory, 0.3": (memory, {}),
         "one sensor off by sigma_f / 4": (biased, {}),
         "10 samples late": (late, {}),
-        "pushes believed 3 times too small": (z, {"sigma_p": s.sigma_p / 3}),
-        "pushes believed 3 times too large": (z, {"sigma_p": 3 * s.sigma_p}),
-        "pushes believed common, Eq 17": (z, {"noise": "common"}),
+        "pushes believed 3 times too small": (z, {"sigma_a": s.sigma_a / 3}),
+        "pushes believed 3 times too large": (z, {"sigma_a": 3 * s.sigma_a}),
+        "pushes believed common, Eq 17": (z, {"noise": "shared"}),
         "start 5 deviations off, blind way": (z, {"start": 5 * np.sqrt(s.P0[0, 0]) * blind}),
     }
     for label, (measured, settings) in cases.items():
-        sigma_p, kind = settings.get("sigma_p", s.sigma_p), settings.get("noise", "independent")
-        yield label, linear_filter(measured, **settings), *constant_velocity(s.T, sigma_p, kind)
+        sigma_a, kind = settings.get("sigma_a", s.sigma_a), settings.get("noise", "per_axis")
+        yield label, linear_filter(measured, **settings), *constant_velocity(s.T, sigma_a, kind)

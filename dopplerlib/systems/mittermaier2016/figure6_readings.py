@@ -12,7 +12,7 @@ from ... import _checks
 from ..._records import record
 from ...estimation.extended_kalman import ekf
 from ...evaluation.consistency import chi2_interval
-from ...evaluation.intervals import share_interval
+from ...evaluation.intervals import proportion_interval
 from ...model.motion import constant_velocity
 from ...model.simulation import simulate
 from .published import published_figure6, scenario, table2
@@ -30,8 +30,8 @@ OPTIONS = {
     "start": ("of Table 2", "as drawn"),
     "P0": ("0.01 I", "0.1 I", "1 I", "0.1 I, noise of 10 %", "0.1 I, noise of 20 %"),
     "process noise": (
-        "common, 0.4 m/s²", "common, 0.04 m/s²", "common, 4 m/s²",
-        "independent, 0.4 m/s²", "independent, 0.04 m/s²",
+        "shared, 0.4 m/s²", "shared, 0.04 m/s²", "shared, 4 m/s²",
+        "per axis, 0.4 m/s²", "per axis, 0.04 m/s²",
     ),
     "noise at the start": ("not raised", "R x 10, 10 samples", "R x 10, 100 samples"),
 }  # fmt: skip
@@ -99,13 +99,13 @@ class Figure6Readings:
 
         Returns
         -------
-        dict of dict of Estimate
+        dict of dict of ConfidenceInterval
             By question and answer. All answers to a question were equally frequent beforehand.
         """
         near = self.nearest(count, **how)
         return {
             question: {
-                answer: share_interval(self.option[question][near] == i)
+                answer: proportion_interval(self.option[question][near] == i)
                 for i, answer in enumerate(answers)
             }
             for question, answers in OPTIONS.items()
@@ -117,7 +117,7 @@ def ruled_out(shares):
 
     Parameters
     ----------
-    shares : dict of dict of Estimate
+    shares : dict of dict of ConfidenceInterval
         From `Figure6Readings.shares`.
 
     Returns
@@ -160,18 +160,18 @@ def figure6_readings(runs, *, rng):
     each = _checks.whole_number("runs", runs, least=len(groups)) // len(groups)
     s, drawn = scenario(), published_figure6()
     starts = np.stack([table2().x_ml, drawn.start])
-    F, _ = constant_velocity(s.T, s.sigma_p)
+    F, _ = constant_velocity(s.T, s.sigma_a)
     option = {question: [] for question in OPTIONS}
     summary = []
     for (noise, raised), child in zip(groups, rng.spawn(len(groups)), strict=True):
         start, covariance = child.integers(2, size=each), child.integers(5, size=each)
         before = np.linalg.solve(F, starts[start][..., None])[..., 0]
         P0 = np.stack([_covariance(OPTIONS["P0"][c], child) for c in covariance])
-        kind, sigma_p = OPTIONS["process noise"][noise].removesuffix(" m/s²").split(", ")
+        kind, sigma_a = OPTIONS["process noise"][noise].removesuffix(" m/s²").split(", ")
         truth, z = simulate(s, each, rng=child)
         track = ekf(
-            z, s.array, before, P0, s.T, float(sigma_p), _deviations(raised), kind,
-            gate="two-sided", keep=(),
+            z, s.array, before, P0, s.T, float(sigma_a), _deviations(raised),
+            kind.replace(" ", "_"), gate="two-sided", keep=(),
         )  # fmt: skip
         error = np.abs(track.x[..., :3] - truth[:, :3])
         summary.append(figure6_summary(error, track.nis, ~track.updated))

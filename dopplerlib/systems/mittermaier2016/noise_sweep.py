@@ -8,7 +8,7 @@ import numpy as np
 from ... import _checks
 from ..._progress import progress_bar
 from ..._records import record
-from ...estimation.maximum_likelihood import ml_start
+from ...estimation.maximum_likelihood import ml_initialize
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_shift
 from ...model.radar_array import RadarArray
@@ -64,8 +64,8 @@ class SweepReading:
         Least and largest speed in m/s; the least is for "center" and "direction" only.
     shared : bool
         Whether one draw serves all grid points (of "center": one speed), or each has its own.
-    likelihood : {"moving", "static"}
-        See `ml_start`; the simulated target does what the likelihood says.
+    likelihood : {"constant_velocity", "stationary"}
+        See `ml_initialize`; the simulated target does what the likelihood says.
     spacing : float
         Of the grid, in m.
     box : {"wide", "approaching", "region"}
@@ -135,7 +135,7 @@ def figure4(
     progress : bool
         Whether to show a bar on standard error.
     workers : int, optional
-        See `ml_start`. The result does not depend on it.
+        See `ml_initialize`. The result does not depend on it.
 
     Returns
     -------
@@ -169,7 +169,7 @@ def figure4(
     streams = [child.spawn(1 + len(variance)) for child in rng.spawn(draws)]
     x = np.stack([_states(reading, own[0]) for own in streams])
     path = np.repeat(x[..., None, :], samples, axis=-2)
-    if reading.likelihood == "moving":
+    if reading.likelihood == "constant_velocity":
         path[..., :3] += T * np.arange(samples)[:, None] * path[..., 3:]
     clean = doppler_shift(path, array)
     box = _box(reading)
@@ -178,7 +178,7 @@ def figure4(
         noise = np.stack([own[1 + k].standard_normal(clean.shape[1:]) for own in streams])
         sigma_f = np.sqrt(variance[k])
         z = clean + sigma_f * noise
-        start = ml_start(z, array, sigma_f, T, box, reading.likelihood, workers=workers)
+        start = ml_initialize(z, array, sigma_f, T, box, reading.likelihood, workers=workers)
         errors.append(_sizes(start.x - x))
     errors = np.array(errors)  # levels, two parts, draws, grid points
     mean, median = errors.mean(axis=-1), np.median(errors, axis=-1)

@@ -7,17 +7,17 @@ from ...chain.baseband import Baseband
 from ...signal.impairments import correct_iq_imbalance, remove_mean
 
 
-def fit_phases(iq, x, moment, steps=3):
-    """Improve states with the phases of all samples up to a moment.
+def fit_phases(iq, x, time, steps=3):
+    """Improve states with the phases of all samples up to a time.
 
     Parameters
     ----------
     iq : Baseband
         Samples with the leading axis ``runs``.
     x : array_like, shape (runs, 6)
-        States at the moment, so good that they explain the phase of each echo to less than half a
+        States at the time, so good that they explain the phase of each echo to less than half a
         turn over the whole record; its unknown start does not count.
-    moment : float
+    time : float
         Time on the clock in s.
     steps : int
         Steps of Gauss-Newton.
@@ -25,7 +25,7 @@ def fit_phases(iq, x, moment, steps=3):
     Returns
     -------
     ndarray, shape (runs, 6)
-        States at the moment, for constant velocity.
+        States at the time, for constant velocity.
 
     Raises
     ------
@@ -38,15 +38,15 @@ def fit_phases(iq, x, moment, steps=3):
     echo is taken to be equally strong, in all of them and in all modules.
     """
     _checks.instance("iq", iq, Baseband)
-    moment = _checks.one_number("moment", moment)
+    time = _checks.one_number("time", time)
     x = _checks.finite("x", x, (iq.x.shape[0], 6)).copy()
-    known = iq.first + np.arange(iq.x.shape[-1]) / iq.fs <= moment + 1e-9
+    known = iq.first + np.arange(iq.x.shape[-1]) / iq.fs <= time + 1e-9
     if known.sum() < 3:
-        raise ValueError(f"moment must leave room for three samples, got {moment}")
+        raise ValueError(f"time must leave room for three samples, got {time}")
     y, valid = iq.samples()
     y = correct_iq_imbalance(remove_mean(y, valid), valid)[..., known]
     weight = valid[..., known].astype(float)[..., None]
-    back = iq.first - iq.delay + np.arange(y.shape[-1]) / iq.fs - moment
+    back = iq.first - iq.delay + np.arange(y.shape[-1]) / iq.fs - time
     per_meter = 4 * np.pi / iq.array.wavelength
     for run in range(len(x)):
         for _ in range(_checks.whole_number("steps", steps)):

@@ -7,7 +7,7 @@ import numpy as np
 from ... import _checks
 from ..._data import read_json, results
 from ..._records import record
-from ...evaluation.intervals import Estimate, mean_interval, share_interval
+from ...evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
 from ...signal import interpolation, phase
 from ...signal.frequency import ml_frequency, ml_frequency_dc
 from ...signal.laws import crlb_frequency_std
@@ -52,9 +52,9 @@ class Race:
         Cramér-Rao bound in Hz, amplitude and phase unknown.
     windows : int
         Windows at each level; all estimators get the same ones.
-    ratio : dict of str to list of Estimate, length L
+    ratio : dict of str to list of ConfidenceInterval, length L
         Root-mean-square errors over the bound, of all windows, by estimator.
-    outliers : dict of str to list of Estimate, length L
+    outliers : dict of str to list of ConfidenceInterval, length L
         Shares of estimates that are off by more than a bin.
     """
 
@@ -80,7 +80,7 @@ class Race:
 
         Returns
         -------
-        Estimate
+        ConfidenceInterval
             Where the measured shares, and the ends of their intervals, come down to `share`
             for good, interpolated on a logarithmic scale; infinite if they never do.
 
@@ -90,7 +90,7 @@ class Race:
             If `share` is not between 0 and 1.
         """
         share = _checks.probability("share", share)
-        return Estimate(
+        return ConfidenceInterval(
             *(
                 self._crossing([getattr(e, end) for e in self.outliers[name]], share)
                 for end in ("value", "low", "high")
@@ -160,7 +160,7 @@ def race_cell(name, x, f, snr_db):
 
     Returns
     -------
-    ratio : Estimate
+    ratio : ConfidenceInterval
         Root-mean-square error over the bound.
     outliers : int
         Estimates that are off by more than a bin.
@@ -183,9 +183,9 @@ def race_cell(name, x, f, snr_db):
     out = np.abs(error) > RACE_FS / x.shape[-1]
     near = mean_interval(np.where(out, 0.0, square), confidence=0.975)
     far = square[out].mean() if out.any() else 0.0
-    share = share_interval(out, confidence=0.975)
+    share = proportion_interval(out, confidence=0.975)
     ends = (getattr(near, end) + getattr(share, end) * far for end in ("value", "low", "high"))
-    return Estimate(*(float(np.sqrt(end)) for end in ends)), int(out.sum())
+    return ConfidenceInterval(*(float(np.sqrt(end)) for end in ends)), int(out.sum())
 
 
 def saved_race():
@@ -203,11 +203,11 @@ def saved_race():
     levels, windows = np.array(saved["snr_db"], dtype=float), saved["windows"]
     ends = [saved[end] for end in ("ratio", "low", "high")]
     ratio = {
-        name: [Estimate(*at) for at in zip(*(end[name] for end in ends), strict=True)]
+        name: [ConfidenceInterval(*at) for at in zip(*(end[name] for end in ends), strict=True)]
         for name in saved["ratio"]
     }
     outliers = {
-        name: [share_interval(np.arange(windows) < count) for count in counts]
+        name: [proportion_interval(np.arange(windows) < count) for count in counts]
         for name, counts in saved["outliers"].items()
     }
     bound = crlb_frequency_std(10 ** (levels / 10), RACE_SAMPLES, RACE_FS)

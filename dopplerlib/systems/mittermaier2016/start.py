@@ -7,7 +7,7 @@ from scipy.optimize import lsq_linear
 
 from ... import _checks
 from ..._records import record
-from ...estimation.maximum_likelihood import Start, ml_start
+from ...estimation.maximum_likelihood import InitialEstimate, ml_initialize
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_jacobian, doppler_shift
 from ...model.radar_array import RadarArray
@@ -21,21 +21,21 @@ class Starts:
 
     Attributes
     ----------
-    start : Start
-        What `ml_start` returns, leading axis ``runs``.
+    start : InitialEstimate
+        What `ml_initialize` returns, leading axis ``runs``.
     position : ndarray, shape (runs,)
         Distance in m between estimate and truth.
     velocity : ndarray, shape (runs,)
         The same of the velocity in m/s.
     """
 
-    start: Start
+    start: InitialEstimate
     position: np.ndarray
     velocity: np.ndarray
 
 
 def start_box(reach=1.5, side=0.75, near=0.1):
-    """Return a room before the ring, and all velocities of the drives, as a box for `ml_start`.
+    """Return a room before the ring, and the drives' velocities, as a box for `ml_initialize`.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def start_box(reach=1.5, side=0.75, near=0.1):
     return np.array([near, -side, -side, -v, -v, -v]), np.array([reach, side, side, v, v, v])
 
 
-def table2_starts(runs, *, rng, samples=None, likelihood="moving", box=None, array=None):
+def table2_starts(runs, *, rng, samples=None, likelihood="constant_velocity", box=None, array=None):
     """Estimate the start of Table 2 from new noise.
 
     Parameters
@@ -74,8 +74,8 @@ def table2_starts(runs, *, rng, samples=None, likelihood="moving", box=None, arr
         Source of the noise, see `simulate`.
     samples : int, optional
         Length of a record; that of the paper, ten, if None.
-    likelihood : {"moving", "static"}
-        What the estimator assumes, see `ml_start`. The target moves in any case.
+    likelihood : {"constant_velocity", "stationary"}
+        What the estimator assumes, see `ml_initialize`. The target moves in any case.
     box : pair of array_like, shape (6,), optional
         Where to search; `start_box()` if None.
     array : RadarArray, optional
@@ -88,18 +88,18 @@ def table2_starts(runs, *, rng, samples=None, likelihood="moving", box=None, arr
     Raises
     ------
     ValueError
-        If an argument is refused by `simulate` or `ml_start`.
+        If an argument is refused by `simulate` or `ml_initialize`.
     """
     s = _record(samples, array)
     _, z = simulate(s, runs, rng=rng)
     box = start_box() if box is None else box
-    start = ml_start(z, s.array, s.sigma_f, s.T, box, likelihood)
+    start = ml_initialize(z, s.array, s.sigma_f, s.T, box, likelihood)
     error = start.x - s.x0
     position, velocity = (np.linalg.norm(error[:, i], axis=-1) for i in (np.s_[:3], np.s_[3:]))
     return Starts(start, position, velocity)
 
 
-def start_misfit(x, *, samples=None, likelihood="moving", rounding=0.0):
+def start_misfit(x, *, samples=None, likelihood="constant_velocity", rounding=0.0):
     """Return how far the shifts of a state are from those of the true start of Table 2.
 
     Parameters
@@ -108,7 +108,7 @@ def start_misfit(x, *, samples=None, likelihood="moving", rounding=0.0):
         State at the first sample in m and m/s.
     samples : int, optional
         Length of the record; that of the paper, ten, if None.
-    likelihood : {"moving", "static"}
+    likelihood : {"constant_velocity", "stationary"}
         Whether the states move on during the record.
     rounding : float
         By how much each component of both states may be off, in m and m/s: half a unit of the
@@ -134,11 +134,11 @@ def start_misfit(x, *, samples=None, likelihood="moving", rounding=0.0):
     x = _checks.finite("x", x, (6,))
     if x.shape != (6,):
         raise ValueError(f"x must be one state, got an array of shape {x.shape}")
-    _checks.one_of("likelihood", likelihood, ("moving", "static"))
+    _checks.one_of("likelihood", likelihood, ("constant_velocity", "stationary"))
     difference, slopes = [], []
     for t in s.time:
         F = np.eye(6)
-        F[:3, 3:] = (t if likelihood == "moving" else 0.0) * np.eye(3)
+        F[:3, 3:] = (t if likelihood == "constant_velocity" else 0.0) * np.eye(3)
         difference.append(doppler_shift(F @ x, s.array) - doppler_shift(F @ s.x0, s.array))
         H, H0 = (doppler_jacobian(F @ state, s.array) @ F for state in (x, s.x0))
         slopes.append(np.hstack([H, -H0]))
@@ -187,7 +187,7 @@ def samples_needed(error=None, *, array=None):
 
 def _bound(s):
     """Return the root mean square position error that the bound allows, in m."""
-    P = crlb(s.x0, s.array, s.sigma_f, s.samples, s.T, "moving")
+    P = crlb(s.x0, s.array, s.sigma_f, s.samples, s.T, "constant_velocity")
     return np.sqrt(np.trace(P[:3, :3]))
 
 

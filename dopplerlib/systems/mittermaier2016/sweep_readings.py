@@ -33,7 +33,7 @@ def sweep_readings():
         name: [velocities[i] for i in compared[name]]
         for name in ("text_grid", "more_boxes", "turned")
     }
-    likelihoods = ("moving", "static")
+    likelihoods = ("constant_velocity", "stationary")
     both = [(shared, likelihood) for shared in (True, False) for likelihood in likelihoods]
     return (
         *(replace(v, shared=s, likelihood=name) for v in velocities for s, name in both),

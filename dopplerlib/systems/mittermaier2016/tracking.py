@@ -67,7 +67,7 @@ def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
     """
     s = scenario()
     start = table2().x_ml if start is None else _checks.finite("start", start, (6,))
-    F, _ = constant_velocity(s.T, s.sigma_p)
+    F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.linalg.solve(F, start[..., None])[..., 0]
     truth, z = simulate(s, runs, rng=rng)
     track = ekf(
@@ -76,7 +76,7 @@ def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
         before,
         s.P0 if P0 is None else P0,
         s.T,
-        s.sigma_p,
+        s.sigma_a,
         s.sigma_f,
         gate=gate,
         keep=keep,

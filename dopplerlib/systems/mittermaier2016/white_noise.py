@@ -5,7 +5,7 @@ import numpy as np
 from ... import _checks
 from ..._records import record
 from ...estimation.linear_kalman import kf
-from ...evaluation.intervals import Estimate, mean_interval
+from ...evaluation.intervals import ConfidenceInterval, mean_interval
 
 
 @record
@@ -14,16 +14,16 @@ class WalkFilter:
 
     Attributes
     ----------
-    nis : Estimate
+    nis : ConfidenceInterval
         Mean of the normalized innovation squared; 1 if the filter is consistent.
-    nees : Estimate
+    nees : ConfidenceInterval
         Mean of the normalized estimation error squared; 1 if the filter is consistent.
-    autocorrelation : list of Estimate, length lags + 1
+    autocorrelation : list of ConfidenceInterval, length lags + 1
         Of the innovations, from lag 0 on; 0 beyond lag 0 if the filter is optimal.
     """
 
-    nis: Estimate
-    nees: Estimate
+    nis: ConfidenceInterval
+    nees: ConfidenceInterval
     autocorrelation: list
 
 

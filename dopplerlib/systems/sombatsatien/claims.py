@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...evaluation.consistency import chi2_interval
-from ...evaluation.intervals import quantile_interval, share_interval
+from ...evaluation.intervals import proportion_interval, quantile_interval
 from ...model.doppler import doppler_jacobian
 from ...replication.verdicts import Draws, Readings
 from .. import mittermaier2016
@@ -46,7 +46,7 @@ def _setting(paper, s, result):
     ratio = np.sum(H * true_H, axis=0) / np.sum(true_H**2, axis=0)
     normal = np.linalg.svd(s.array.positions)[2][2]
     return {
-        "sigma-p": paper.sigma_p,
+        "sigma-p": paper.sigma_a,
         "sigma-f": paper.sigma_f,
         "interval": paper.T,
         "ring-plane": np.abs(normal),
@@ -77,7 +77,7 @@ def _outcome(result):
         ),
         "settled-above": late,
         "settled-below": late,
-        "behind": share_interval(final[:, 0] < 0),
+        "behind": proportion_interval(final[:, 0] < 0),
     }
 
 
@@ -99,12 +99,12 @@ def _conclusions(s, result, sign, repaired):
     final_error = quantile_interval(repaired.position_error[:, -1])
     upper = chi2_interval(len(s.array), len(result.time), 0.999)[1]
     return {
-        "ambiguity": share_interval(np.sign(result.start[:, 2]) != np.sign(s.x0[2])),
-        "start-sufficient": share_interval(sign.position_error[:, -1] < 0.01),
+        "ambiguity": proportion_interval(np.sign(result.start[:, 2]) != np.sign(s.x0[2])),
+        "start-sufficient": proportion_interval(sign.position_error[:, -1] < 0.01),
         "stable": quantile_interval(result.position_error[:, -1] / start_error),
         "consistent": quantile_interval(result.track.nis.mean(axis=-1) / upper),
         "centimeter": quantile_interval(np.abs(result.track.x[:, -1, 0] - result.truth[-1, 0])),
         "limit": final_error,
         "limit-bound": final_bound("x"),
-        "approaching": share_interval(repaired.track.x[:, -1, 3] < 0),
+        "approaching": proportion_interval(repaired.track.x[:, -1, 3] < 0),
     }

@@ -7,7 +7,7 @@ import numpy as np
 from ... import _checks
 from ..._records import record
 from ...estimation.extended_kalman import ekf
-from ...estimation.maximum_likelihood import ml_start
+from ...estimation.maximum_likelihood import ml_initialize
 from ...estimation.track import Track
 from ...evaluation.bounds import crlb
 from ...evaluation.consistency import nees
@@ -77,9 +77,9 @@ def post_mortem(
     plane : {"z", "x"}
         Plane of the ring, see `scenario`.
     start : {"as reported", "global", "long", "truth"} or array_like, shape (6,) or (runs, 6)
-        "as reported": one descent, see `local_start`. "global": `ml_start` in the same box, on the
-        same ten samples, for a target that moves. "long": the same on a hundred samples, and `P0`
-        is its covariance. "truth": the true state. Or states of one's own.
+        "as reported": one descent, see `local_start`. "global": `ml_initialize` in the same box, on
+        the same ten samples, for a target that moves. "long": the same on a hundred samples, and
+        `P0` is its covariance. "truth": the true state. Or states of one's own.
     P0 : array_like, shape (6, 6), optional
         Covariance of the start; that of the report, 0.1 I, if None and the start brings none.
     z : array_like, shape (runs, 1000, 6), optional
@@ -111,7 +111,7 @@ def post_mortem(
         start, own = _start(_checks.one_of("start", start, STARTS), first, s, settings, true_start)
     start = np.broadcast_to(start, (len(rest), 6))
     track = (student_ekf if jacobian == "as reported" else ekf)(
-        rest, s.array, start, own if P0 is None else P0, s.T, s.sigma_p, s.sigma_f
+        rest, s.array, start, own if P0 is None else P0, s.T, s.sigma_a, s.sigma_f
     )
     error = track.x - truth
     return PostMortem(
@@ -231,7 +231,7 @@ def final_bound(plane):
         In m: the Cramér-Rao bound for a target at constant velocity.
     """
     s = scenario(plane)
-    P = crlb(s.x0, s.array, s.sigma_f, s.samples, s.T, "moving")
+    P = crlb(s.x0, s.array, s.sigma_f, s.samples, s.T, "constant_velocity")
     F = np.eye(6)
     F[:3, 3:] = (s.samples - 1) * s.T * np.eye(3)
     return float(np.sqrt(np.trace((F @ P @ F.T)[:3, :3])))
@@ -305,5 +305,5 @@ def _start(name, z, s, settings, true_start):
         return true_start, s.P0
     if name == "as reported":
         return local_start(z, s.array, settings.guess, settings.box)[0], s.P0
-    found = ml_start(z, s.array, s.sigma_f, s.T, settings.box, at="last")
+    found = ml_initialize(z, s.array, s.sigma_f, s.T, settings.box, at="last")
     return found.x, found.P if name == "long" else s.P0

@@ -60,7 +60,7 @@ def scenario(plane="z"):
         return s
     radius = float(np.linalg.norm(s.array.positions[0]))
     array = RadarArray.ring(len(s.array), radius, normal="x", wavelength=s.array.wavelength)
-    return Scenario(array, s.x0, s.T, s.samples, s.sigma_f, s.sigma_p, s.P0)
+    return Scenario(array, s.x0, s.T, s.samples, s.sigma_f, s.sigma_a, s.P0)
 
 
 def start_settings():

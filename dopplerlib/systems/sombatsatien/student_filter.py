@@ -37,7 +37,7 @@ def student_jacobian(x, array, jacobian="as reported"):
     return doppler_jacobian(x, array) * _signs(jacobian)
 
 
-def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
+def student_ekf(z, array, x0, P0, T, sigma_a, sigma_f, jacobian="as reported"):
     """Track a target as the report does: predict, then update in the form of Joseph.
 
     Parameters
@@ -52,7 +52,7 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
         Its covariance.
     T : float
         Sampling interval in s.
-    sigma_p : float
+    sigma_a : float
         Standard deviation of the acceleration in m/s^2; Q has rank one.
     sigma_f : float
         Standard deviation of the measurements in Hz.
@@ -73,7 +73,7 @@ def student_ekf(z, array, x0, P0, T, sigma_p, sigma_f, jacobian="as reported"):
     runs, samples, m = z.shape
     x = np.broadcast_to(_checks.finite("x0", x0, (6,)), (runs, 6))
     P = np.broadcast_to(_checks.covariance("P0", P0, 6), (runs, 6, 6))
-    F, Q = constant_velocity(T, sigma_p)
+    F, Q = constant_velocity(T, sigma_a)
     signs, sensors = _signs(jacobian), (*array.positions.T, array.doppler_per_speed)
     R = sigma_f**2 * np.eye(m)
 

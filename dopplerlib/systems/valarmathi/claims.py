@@ -8,7 +8,7 @@ it best.
 import numpy as np
 
 from ... import _checks
-from ...evaluation.intervals import Estimate, mean_interval, quantile_interval
+from ...evaluation.intervals import ConfidenceInterval, mean_interval, quantile_interval
 from ...replication.verdicts import Readings
 from .algorithms import run_algorithms
 from .doppler_filter import measurement_variance
@@ -235,7 +235,7 @@ def _limits_apart():
     shares = failed_shares()
     for path in BOTH:
         two, one = (failure_limit(*shares[path, a]) for a in (4, 2))
-        yield Estimate(one.value - two.value, one.low - two.high, one.high - two.low)
+        yield ConfidenceInterval(one.value - two.value, one.low - two.high, one.high - two.low)
 
 
 def _cells(found, paths, low=LOWEST, high=np.inf):

@@ -5,7 +5,7 @@ import numpy as np
 from ... import _checks
 from ..._data import read_lines, results
 from ..._records import record
-from ...evaluation.intervals import Estimate, share_interval
+from ...evaluation.intervals import ConfidenceInterval, proportion_interval
 from .algorithms import ALGORITHMS, run_algorithms
 from .published import PATHS, chosen, stated
 from .windows import window_table
@@ -172,7 +172,7 @@ def failed_shares():
 
     Returns
     -------
-    dict of (str, int) to tuple of (ndarray, tuple of Estimate)
+    dict of (str, int) to tuple of (ndarray, tuple of ConfidenceInterval)
         By path and algorithm: signal-to-noise ratios in dB, and at each the share of runs whose
         error of the whole record is more than `failed_rmse` of `chosen`, with its interval.
     """
@@ -185,7 +185,9 @@ def failed_shares():
             part = rows[(rows[:, 0] == number) & (rows[:, 2] == algorithm)]
             shares[path, algorithm] = (
                 part[:, 1],
-                tuple(share_interval(np.arange(runs) < failed) for runs, failed in part[:, 3:]),
+                tuple(
+                    proportion_interval(np.arange(runs) < failed) for runs, failed in part[:, 3:]
+                ),
             )
     return shares
 
@@ -197,14 +199,14 @@ def failure_limit(snrs_db, shares, limit=None):
     ----------
     snrs_db : array_like, shape (S,)
         Signal-to-noise ratios in dB, rising.
-    shares : sequence of Estimate, length S
+    shares : sequence of ConfidenceInterval, length S
         Share of failed runs at each.
     limit : float, optional
         Share from which an algorithm has failed; `failed_share` of `chosen` if None.
 
     Returns
     -------
-    Estimate
+    ConfidenceInterval
         Where the share falls to the limit for the last time, in dB, by linear interpolation; and
         where the ends of its interval do.
 
@@ -215,8 +217,8 @@ def failure_limit(snrs_db, shares, limit=None):
 
     Examples
     --------
-    >>> from dopplerlib.evaluation.intervals import Estimate
-    >>> shares = [Estimate(1, 1, 1), Estimate(0.1, 0.1, 0.1), Estimate(0.0, 0.0, 0.0)]
+    >>> from dopplerlib.evaluation.intervals import ConfidenceInterval
+    >>> shares = [ConfidenceInterval(p, p, p) for p in (1.0, 0.1, 0.0)]
     >>> failure_limit([0, 1, 2], shares, 0.05).value
     1.5
     """
@@ -231,4 +233,4 @@ def failure_limit(snrs_db, shares, limit=None):
         k = above[-1]
         part = (share[k] - limit) / (share[k] - share[k + 1])
         ends.append(float(snrs_db[k] + part * (snrs_db[k + 1] - snrs_db[k])))
-    return Estimate(*ends)
+    return ConfidenceInterval(*ends)

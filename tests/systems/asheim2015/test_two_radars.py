@@ -6,7 +6,7 @@ import pytest
 from dopplerlib import chi2_interval, nees
 from dopplerlib.estimation.track import Track
 from dopplerlib.evaluation.range_bounds import range_crlb
-from dopplerlib.model.kinematics import ncv_transition, wna_process_noise
+from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 from dopplerlib.model.range_rate import range_rate, range_rate_jacobian
 from dopplerlib.systems import asheim2015 as thesis
 from dopplerlib.systems.asheim2015.in_the_plane import polar, polar_jacobian
@@ -122,7 +122,7 @@ def test_the_nis_of_the_filter_in_the_plane_is_that_of_its_first_prediction(reco
     own, start = thesis.settings("modern"), np.array([0.05, 0.1, 0.1, 0.1])
     found = thesis.central_filter(records.first(1), own, start=start).nis[0, 0, 1]
     F = ncv_transition(own.T, dim=2, order="derivative")
-    Q = wna_process_noise(own.T, own.Q[1, 1] / own.T, dim=2, order="derivative")
+    Q = cwna_process_noise(own.T, own.Q[1, 1] / own.T, dim=2, order="derivative")
     x = F @ start
     P = F @ (thesis.scenario()["cartesian"]["start_covariance"] * np.eye(4)) @ F.T + Q
     predicted = range_rate(x, records.sensors[:1])[0]

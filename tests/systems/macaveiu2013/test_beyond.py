@@ -5,7 +5,7 @@ import pytest
 
 from dopplerlib import gnn_assign, nees, rts_smooth
 from dopplerlib.estimation.extended_update import ekf_innovation
-from dopplerlib.model.kinematics import ncv_transition
+from dopplerlib.model.motion import ncv_transition
 from dopplerlib.model.polar_radar import polar_radar_h
 from dopplerlib.systems import macaveiu2013 as paper
 from dopplerlib.systems.macaveiu2013 import chain, crossing, maneuvers, polar, tracking

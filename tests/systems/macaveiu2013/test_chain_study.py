@@ -5,7 +5,7 @@ from dataclasses import astuple
 import numpy as np
 import pytest
 
-from dopplerlib.evaluation.intervals import share_interval
+from dopplerlib.evaluation.intervals import proportion_interval
 from dopplerlib.systems import macaveiu2013 as paper
 from dopplerlib.systems.macaveiu2013 import chain, chain_study, polar
 from studies import vehicle_tracking as tool
@@ -105,8 +105,8 @@ def test_the_clutter_rule_deletes_the_predicted_shares():
 
 def test_more_hits_leave_fewer_false_tracks_and_start_later():
     few, many = (chain_study.outcomes()[9, name] for name in ("as in Fig 6", "8 hits of 10"))
-    assert share_interval(few["false"] > 0).low > 0.5
-    assert share_interval(many["false"] > 0).high < 0.05
+    assert proportion_interval(few["false"] > 0).low > 0.5
+    assert proportion_interval(many["false"] > 0).high < 0.05
     assert (many["first"] > few["first"]).all()
 
 
@@ -114,10 +114,13 @@ def test_the_clutter_rule_breaks_the_track_of_a_crossing_pedestrian_and_not_that
     found = chain_study.outcomes()
     for figure in (8, 11):
         car, walker = (found[figure, f"{who}as in Fig 6"] for who in ("", "pedestrian "))
-        assert share_interval(car["breaks"] > 0).high < 0.1
-        assert share_interval(walker["breaks"] > 0).low > 0.6
+        assert proportion_interval(car["breaks"] > 0).high < 0.1
+        assert proportion_interval(walker["breaks"] > 0).low > 0.6
         kept = found[figure, "pedestrian with rule for new tracks only"]
-        assert share_interval(kept["breaks"] > 0).high < share_interval(walker["breaks"] > 0).low
+        assert (
+            proportion_interval(kept["breaks"] > 0).high
+            < proportion_interval(walker["breaks"] > 0).low
+        )
 
 
 def test_with_one_target_the_hungarian_rule_changes_next_to_nothing():
@@ -125,7 +128,7 @@ def test_with_one_target_the_hungarian_rule_changes_next_to_nothing():
         plain, other = (
             chain_study.outcomes()[figure, name] for name in ("as in Fig 6", "Hungarian")
         )
-        assert share_interval(plain["held"] != other["held"]).high < 0.05
+        assert proportion_interval(plain["held"] != other["held"]).high < 0.05
 
 
 def test_a_pedestrian_is_one_point_and_a_car_a_row_of_them():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import steady_state_gain
-from dopplerlib.model.kinematics import ncv_transition
+from dopplerlib.model.motion import ncv_transition
 from dopplerlib.systems import macaveiu2013 as paper
 from dopplerlib.systems.macaveiu2013 import lag, regions, tracking
 

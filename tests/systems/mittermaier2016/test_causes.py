@@ -24,7 +24,7 @@ def records():
 def settings(z, start=None, P0=None):
     s = SCENARIO
     start = paper.table2().x_ml if start is None else start
-    return z, s.array, start, s.P0 if P0 is None else P0, s.T, s.sigma_p, s.sigma_f
+    return z, s.array, start, s.P0 if P0 is None else P0, s.T, s.sigma_a, s.sigma_f
 
 
 def median_nees(runs=300, keep=KEEP, samples=101, **options):
@@ -34,7 +34,7 @@ def median_nees(runs=300, keep=KEEP, samples=101, **options):
     return np.median(result.nees, axis=0)
 
 
-@pytest.mark.parametrize("noise", ["common", "independent"])
+@pytest.mark.parametrize("noise", ["shared", "per_axis"])
 def test_with_no_switch_moved_it_is_the_ekf_of_the_library(records, noise):
     """Over 100 samples; later rounding grows, since a wrong estimate is unstable in some runs."""
     _, z = records
@@ -54,7 +54,7 @@ def test_without_curvature_and_with_a_standing_path_it_is_the_linear_kalman_filt
     theirs = paper.switched_ekf(*settings(z), path=path, tangent_at="path", curvature=0.0)
     H = np.array(paper.causes.doppler_jacobian(s.x0, s.array))
     offset = doppler_shift(s.x0, s.array) - H @ s.x0
-    F, Q = paper.causes.constant_velocity(s.T, s.sigma_p)
+    F, Q = paper.causes.constant_velocity(s.T, s.sigma_a)
     R = s.sigma_f**2 * np.eye(6)
     linear = kf(z - offset, F, Q, H, R, paper.table2().x_ml, s.P0)
     np.testing.assert_allclose(theirs.x, linear.x, rtol=1e-8, atol=1e-9)
@@ -111,7 +111,7 @@ def test_the_second_order_filter_is_less_sure_and_in_a_linear_world_the_same(rec
     assert (np.trace(second.S, axis1=-2, axis2=-1) > np.trace(first.S, axis1=-2, axis2=-1))[
         :, 0
     ].all()
-    F, Q = paper.causes.constant_velocity(SCENARIO.T, SCENARIO.sigma_p)
+    F, Q = paper.causes.constant_velocity(SCENARIO.T, SCENARIO.sigma_a)
     mean, covariance = _missed(
         (F @ paper.table2().x_ml)[None], (F @ SCENARIO.P0 @ F.T + Q)[None], SCENARIO.array
     )

@@ -174,9 +174,9 @@ def test_the_median_error_of_a_sphere_is_that_of_chi_square():
 
 
 def test_what_makes_no_sense_is_refused_by_name():
-    with pytest.raises(ValueError, match="moment must leave room for a window"):
+    with pytest.raises(ValueError, match="time must leave room for a window"):
         paper.position_bound(0.01, 0.05, 1e6)
-    with pytest.raises(ValueError, match="moment must leave room for three samples"):
+    with pytest.raises(ValueError, match="time must leave room for three samples"):
         paper.position_bound_iq(0.001, 1e6)
     with pytest.raises(ValueError, match="cn0 must be positive"):
         paper.position_bound_iq(0.5, 0.0)

@@ -39,7 +39,7 @@ def test_the_likeliest_so_far_counts_whatever_comes_later(found):
 
 def test_nothing_is_known_before_its_window_ends(found):
     assert [found.samples_at(m) for m in (0.131, 0.2299, 0.23, 0.3)] == [0, 0, 1, 1]
-    with pytest.raises(ValueError, match="moment must not be before"):
+    with pytest.raises(ValueError, match="time must not be before"):
         found.samples_at(0.12)
 
 
@@ -48,7 +48,9 @@ def test_between_samples_the_state_is_predicted_and_less_well_known(found):
     moment = 0.35
     x, P, _ = found.at(moment)
     assert_allclose(x[0], truth(moment), atol=1e-12)
-    assert_allclose(P[0], _predicted(found.P[0, 1, 2], moment - 0.3, found.sigma_p), rtol=1e-12)
+    assert_allclose(
+        P[0], _predicted(found.P[0, 1, 2], moment - 0.3, found.velocity_random_walk), rtol=1e-12
+    )
 
 
 def _predicted(P, ahead, sigma):

@@ -88,7 +88,7 @@ def test_what_the_paper_quotes_is_what_is_judged():
 
 
 def test_an_acceleration_has_the_unit_of_a_speed_per_time():
-    """A doubled interval doubles the speed that the acceleration sigma_p gives: Eq 17."""
+    """A doubled interval doubles the speed that the acceleration sigma_a gives: Eq 17."""
     _, Q = constant_velocity(0.001, 0.4)
     _, Q_long = constant_velocity(0.002, 0.4)
     np.testing.assert_allclose(np.sqrt(Q_long[3, 3] / Q[3, 3]), 2, rtol=1e-12)
@@ -127,7 +127,7 @@ def test_one_sample_of_a_line_does_not_see_where_the_target_is_heading(place):
     bound = np.sqrt(P[:, 0, 0] + P[:, 1, 1])
     # The information has a condition of 1e9 after scaling.
     np.testing.assert_allclose(bound, bound[0], rtol=1e-5)
-    moving = crlb(x, array, 0.1, 10, 0.001, "moving", free=free)
+    moving = crlb(x, array, 0.1, 10, 0.001, "constant_velocity", free=free)
     assert np.ptp(np.log(moving[:, 0, 0] + moving[:, 1, 1])) > 0.2
 
 
@@ -143,7 +143,9 @@ def test_turning_the_ring_hardly_changes_the_bound():
     s = paper.scenario()
     for samples in (10, 100, 1000):
         rings = [RadarArray.ring(6, 0.2, phase=np.deg2rad(a)) for a in range(0, 60, 10)]
-        z = [crlb(s.x0, r, s.sigma_f, samples, s.T, "moving")[2, 2] ** 0.5 for r in rings]
+        z = [
+            crlb(s.x0, r, s.sigma_f, samples, s.T, "constant_velocity")[2, 2] ** 0.5 for r in rings
+        ]
         assert max(z) < 1.1 * min(z)
 
 

@@ -66,9 +66,12 @@ def test_without_noise_the_shifts_are_those_of_the_state_at_the_stated_time(clea
 @pytest.mark.parametrize(
     ("settings", "late"),
     [
-        ({"tag": "end"}, lambda iq, n: (n - 1) / 2 / iq.fs),
+        ({"timestamp": "end"}, lambda iq, n: (n - 1) / 2 / iq.fs),
         ({"subtract_delay": False}, lambda iq, n: iq.delay),
-        ({"tag": "end", "subtract_delay": False}, lambda iq, n: (n - 1) / 2 / iq.fs + iq.delay),
+        (
+            {"timestamp": "end", "subtract_delay": False},
+            lambda iq, n: (n - 1) / 2 / iq.fs + iq.delay,
+        ),
     ],
     ids=["end", "delay", "both"],
 )
@@ -83,7 +86,7 @@ def test_a_wrong_time_moves_the_position_back_by_the_way_of_that_time(iq, found,
 
 
 def test_nis_does_not_see_a_wrong_time_and_nees_does(iq, found):
-    wrong = paper.track_iq(iq, tag="end", subtract_delay=False)
+    wrong = paper.track_iq(iq, timestamp="end", subtract_delay=False)
     assert_array_equal(wrong.nis, found.nis)
     assert_array_equal(wrong.score, found.score)
     right, late = paper.judged(found), paper.judged(wrong)
@@ -122,7 +125,7 @@ def test_the_covariance_of_a_start_is_the_inverse_information(found, iq):
     F = np.eye(6)
     F[:3, 3:] = (K - 1) * T * np.eye(3)
     first = np.linalg.solve(F, x)
-    expected = F @ crlb(first, iq.array, sigma, K, T, "moving") @ F.T
+    expected = F @ crlb(first, iq.array, sigma, K, T, "constant_velocity") @ F.T
     P = found.P[0, np.argmin(found.score[0, :, 0]), 0]
     assert_allclose(P, expected, rtol=1e-4, atol=1e-6 * np.abs(expected).max())
 
@@ -154,7 +157,7 @@ def test_nis_is_low_for_two_reasons(iq, found):
     Before 0.7 s the bars are right: squares of the true errors over them average six. The mean over
     60 runs of 16 windows has a deviation of 0.11, and the two are paired.
     """
-    calm = paper.track_iq(iq, sigma_p=S.sigma_p / 100)
+    calm = paper.track_iq(iq, sigma_a=S.sigma_a / 100)
     squared = (found.shift - doppler_shift(states(found.time), S.array)) / found.shift_std
     squared = np.sum(squared**2, axis=-1)[:, found.used :]
     early = found.time[found.used :] < 0.7
@@ -181,7 +184,7 @@ def test_a_constant_left_in_spoils_the_position(iq, found):
 
 def test_inflating_changes_the_belief_and_hardly_the_estimate(iq):
     few = replace(iq, x=iq.x[:30])
-    plain, wide = (paper.track_iq(few, hop=0.0125, inflate=c) for c in (1.0, 2.0))
+    plain, wide = (paper.track_iq(few, hop=0.0125, variance_inflation=c) for c in (1.0, 2.0))
     assert_allclose(wide.shift_std, np.sqrt(2) * plain.shift_std)
     a, b = paper.judged(plain), paper.judged(wide)
     # Q is small, so the gain hardly notices and P doubles nearly.
@@ -203,7 +206,9 @@ def test_the_innovations_of_overlapping_windows_remember_and_nis_does_not_notice
     few = replace(iq, x=iq.x[:20])
     overlap = paper.track_iq(few, hop=0.0025)
     half = paper.track_iq(few, hop=0.0125)
-    apart, close, middle = (paper.judged(t).memory.mean() for t in (found, overlap, half))
+    apart, close, middle = (
+        paper.judged(t).lag1_autocorrelation.mean() for t in (found, overlap, half)
+    )
     # The law of overlap says 0.70 at a tenth of the window and -0.25 at half of it.
     assert abs(apart) < 0.1
     assert close == pytest.approx(overlap_correlation(0.1), abs=0.1)
@@ -240,7 +245,7 @@ def test_what_is_known_at_a_moment_does_not_depend_on_what_comes_later(undisturb
 
 
 def test_a_target_that_is_no_longer_heard_is_lost_as_fast_whatever_the_hop(undisturbed):
-    """The acceleration lets each velocity wander by sigma_p sqrt(T t), T a millisecond."""
+    """The acceleration lets each velocity wander by sigma_a sqrt(T t), T a millisecond."""
     x = undisturbed.x.copy()
     x[..., round((0.4 - undisturbed.first) * undisturbed.fs) :] = 0
     for hop in (0.025, 0.001):
@@ -252,7 +257,7 @@ def test_a_target_that_is_no_longer_heard_is_lost_as_fast_whatever_the_hop(undis
         P = f.P[np.arange(len(best)), best, k:]
         grown = np.diagonal(P[:, -1] - P[:, 0], axis1=-2, axis2=-1)[:, 3:]
         time = f.time[-1] - f.time[f.used + k - 1]
-        assert_allclose(grown, S.sigma_p**2 * S.T * time, rtol=1e-6)
+        assert_allclose(grown, S.sigma_a**2 * S.T * time, rtol=1e-6)
 
 
 @pytest.mark.parametrize("fault", ["silent", "constant", "noise"])
@@ -317,17 +322,17 @@ def test_the_shifts_of_an_echo_that_grows_become_better():
 
 def test_what_makes_no_sense_is_refused_by_name(iq, found):
     for settings, message in [
-        ({"tag": "start"}, "tag must be one of"),
+        ({"timestamp": "start"}, "timestamp must be one of"),
         ({"start": 0.03}, "start must hold at least two windows"),
-        ({"inflate": 0}, "inflate must be positive"),
+        ({"variance_inflation": 0}, "variance_inflation must be positive"),
         ({"search": "half"}, "search must be one of"),
         ({"window": -1}, "window must be positive"),
-        ({"sigma_p": 0}, "sigma_p must be positive"),
+        ({"sigma_a": 0}, "sigma_a must be positive"),
         ({"dc_until": 2.0}, "dc_until must be within the record"),
     ]:
         with pytest.raises(ValueError, match=message):
             paper.track_iq(iq, **settings)
-    with pytest.raises(ValueError, match="moment must not be before"):
+    with pytest.raises(ValueError, match="time must not be before"):
         found.at(0.1)
     with pytest.raises(ValueError, match="iq must be a Baseband"):
         paper.track_iq(iq.x)

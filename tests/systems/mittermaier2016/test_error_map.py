@@ -25,7 +25,9 @@ def one():
 @pytest.fixture(scope="module")
 def ten():
     """Return our map from ten samples of a target that moves, and is assumed to."""
-    return paper.figure3(DRAWS, rng=np.random.default_rng(32), samples=10, likelihood="moving")
+    return paper.figure3(
+        DRAWS, rng=np.random.default_rng(32), samples=10, likelihood="constant_velocity"
+    )
 
 
 def places(published, sensors):
@@ -88,7 +90,7 @@ def test_only_the_places_of_the_sensors_have_no_estimate(one, ten, published):
             assert_array_equal(np.isnan(error), np.repeat(empty[..., None], DRAWS, axis=-1))
 
 
-@pytest.mark.parametrize(("samples", "likelihood"), [(1, "static"), (10, "moving")])
+@pytest.mark.parametrize(("samples", "likelihood"), [(1, "stationary"), (10, "constant_velocity")])
 def test_where_errors_are_small_they_have_the_size_of_the_bound(one, ten, samples, likelihood):
     """Mean square over bound squared, averaged over hundreds of places with 6 draws each.
 
@@ -109,15 +111,15 @@ def test_the_error_of_the_state_adds_position_and_velocity(one):
 def test_the_bound_is_that_of_the_array_and_four_unknowns(published):
     i, j = 30, 7
     x = [published.x[i], published.y[j], 0, *published.velocity]
-    P = crlb(x, RadarArray.linear(5, 0.4), 0.1, 10, 0.001, "moving", free=PLANE)
-    bound = paper.figure3_bound(samples=10, likelihood="moving")
+    P = crlb(x, RadarArray.linear(5, 0.4), 0.1, 10, 0.001, "constant_velocity", free=PLANE)
+    bound = paper.figure3_bound(samples=10, likelihood="constant_velocity")
     assert bound[i, j] == pytest.approx(np.sqrt(P[0, 0] + P[1, 1]), rel=1e-12)
 
 
 def test_opposite_v_x_turns_the_map_upside_down(one, published):
     """Reflected at the line of the sensors, nothing changes but rounding."""
     reflected = published.velocity * [-1, 1, 1]
-    for likelihood, samples in (("static", 1), ("moving", 10)):
+    for likelihood, samples in (("stationary", 1), ("constant_velocity", 10)):
         settings = {"samples": samples, "likelihood": likelihood}
         bound = paper.figure3_bound(**settings)
         mirrored = paper.figure3_bound(**settings, velocity=reflected)[::-1]
@@ -134,7 +136,7 @@ def test_opposite_v_x_turns_the_map_upside_down(one, published):
 
 
 def test_ten_samples_of_a_constant_are_worth_the_root_of_ten():
-    one, ten = (paper.figure3_bound(samples=k, likelihood="static") for k in (1, 10))
+    one, ten = (paper.figure3_bound(samples=k, likelihood="stationary") for k in (1, 10))
     finite = np.isfinite(one)
     # Some matrices are nearly singular: their inverse keeps five digits.
     assert_allclose(ten[finite], one[finite] / np.sqrt(10), rtol=1e-4)
@@ -149,7 +151,10 @@ def test_nothing_is_seen_of_the_distance_along_the_line_of_the_sensors():
 
 
 def test_moving_samples_help_everywhere():
-    one, ten = paper.figure3_bound(), paper.figure3_bound(samples=10, likelihood="moving")
+    one, ten = (
+        paper.figure3_bound(),
+        paper.figure3_bound(samples=10, likelihood="constant_velocity"),
+    )
     finite = np.isfinite(one)
     assert (ten[finite] < one[finite]).all()
 

@@ -76,8 +76,8 @@ def test_nees_of_the_linear_world_averages_to_six_and_nis_too(world):
     """Averages over time and runs; spread from the number of independent values, times five."""
     truth, z = world
     track = paper.linear_filter(z)
-    _, Q = constant_velocity(SCENARIO.T, SCENARIO.sigma_p, "independent")
-    F, _ = constant_velocity(SCENARIO.T, SCENARIO.sigma_p)
+    _, Q = constant_velocity(SCENARIO.T, SCENARIO.sigma_a, "per_axis")
+    F, _ = constant_velocity(SCENARIO.T, SCENARIO.sigma_a)
     squared = nees(track, truth)
     worth = RUNS * nees_samples(track.P[0], F, Q)
     assert squared.mean() == pytest.approx(6, abs=5 * np.sqrt(12 / worth))
@@ -94,7 +94,7 @@ def test_nees_of_the_linear_world_averages_to_six_and_nis_too(world):
 def test_nees_with_one_covariance_for_all_runs_is_that_of_the_library(world):
     truth, z = world
     track = paper.linear_filter(z[:4])
-    F, Q = constant_velocity(SCENARIO.T, SCENARIO.sigma_p, "independent")
+    F, Q = constant_velocity(SCENARIO.T, SCENARIO.sigma_a, "per_axis")
     results = rejections(track, truth[:4], F, Q, group=2, lags=1)
     values = nees(track, truth[:4])
     lower, upper = chi2_interval(6)
@@ -105,7 +105,7 @@ def test_nees_with_one_covariance_for_all_runs_is_that_of_the_library(world):
 def test_a_covariance_for_each_run_gives_what_one_for_all_gives(world):
     truth, z = world
     track = paper.linear_filter(z[:2])
-    F, Q = constant_velocity(SCENARIO.T, SCENARIO.sigma_p, "independent")
+    F, Q = constant_velocity(SCENARIO.T, SCENARIO.sigma_a, "per_axis")
     one = rejections(track, truth[:2], F, Q, group=2, lags=1)
     track = replace(track, P=np.repeat(track.P, 2, axis=0))
     each = rejections(track, truth[:2], F, Q, group=2, lags=1)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import chi2_interval
-from dopplerlib.evaluation.intervals import Estimate
+from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems.mittermaier2016.figure6_readings import (
     OPTIONS,
@@ -65,7 +65,7 @@ def test_long_raised_noise_is_ruled_out_and_the_printed_settings_are_not(runs):
             ("start", "of Table 2"),
             ("start", "as drawn"),
             ("P0", "0.1 I"),
-            ("process noise", "common, 0.4 m/s²"),
+            ("process noise", "shared, 0.4 m/s²"),
             ("noise at the start", "not raised"),
         ):
             assert printed not in out
@@ -86,8 +86,8 @@ def test_a_pretended_publication_is_recognized(runs, answer):
 
 def test_an_answer_is_ruled_out_by_ten_to_one_and_not_by_less():
     shares = {
-        "q": {"a": Estimate(0.9, 0.8, 1.0), "b": Estimate(0.1, 0.05, 0.15)},
-        "r": {"a": Estimate(0.9, 0.8, 1.0), "b": Estimate(0.01, 0.0, 0.07)},
+        "q": {"a": ConfidenceInterval(0.9, 0.8, 1.0), "b": ConfidenceInterval(0.1, 0.05, 0.15)},
+        "r": {"a": ConfidenceInterval(0.9, 0.8, 1.0), "b": ConfidenceInterval(0.01, 0.0, 0.07)},
     }
     assert paper.ruled_out(shares) == {("r", "b")}
 

@@ -28,7 +28,7 @@ def right():
     rng = np.random.default_rng(43)
     return {
         name: paper.figure3(6, rng=rng, samples=10, likelihood=name)
-        for name in ("static", "moving")
+        for name in ("stationary", "constant_velocity")
     }
 
 
@@ -45,13 +45,15 @@ def test_an_orientation_is_the_map_of_that_array_and_velocity(
     published, orientation, axis, velocity
 ):
     """Computed anew for an array along x, where the library turns the map of one along y."""
-    bound = paper.figure3_bound(samples=10, likelihood="moving")  # that of one is symmetric
+    bound = paper.figure3_bound(
+        samples=10, likelihood="constant_velocity"
+    )  # that of one is symmetric
     seen = paper.ORIENTATIONS[orientation](bound)
     array = RadarArray.linear(5, 0.4, axis=axis)
     off_axes = [i for i in range(39) if i != 19]
     for i, j in np.random.default_rng(44).choice(off_axes, (40, 2)):
         x = [published.x[i], published.y[j], 0, *np.multiply(np.sqrt(2), velocity), 0]
-        P = crlb(x, array, published.sigma_f, 10, published.T, "moving", free=PLANE)
+        P = crlb(x, array, published.sigma_f, 10, published.T, "constant_velocity", free=PLANE)
         # The inverse of a nearly singular matrix has lost half of the digits.
         assert seen[i, j] == pytest.approx(np.sqrt(P[0, 0] + P[1, 1]), rel=1e-6)
 
@@ -114,9 +116,9 @@ def test_the_right_map_is_turned_too_and_its_estimator_knew_that_the_target_move
 ):
     readings = paper.figure3_readings(right, published, 1, width=width)
     best = readings[0]
-    assert (best.orientation, best.label) == ("all turned", "moving")
+    assert (best.orientation, best.label) == ("all turned", "constant_velocity")
     for other in readings:
-        if other.label == "static" or other.orientation in ("as printed", "array turned"):
+        if other.label == "stationary" or other.orientation in ("as printed", "array turned"):
             assert other.behind > 5 * other.deviation
 
 
@@ -143,7 +145,10 @@ def test_the_bad_corners_are_those_of_the_turned_velocity(published, left):
 def test_neither_position_nor_state_gives_the_shares_of_the_right_map(published, right):
     """One is too small at 5 cm, the other too large at 20 cm, by more than all of our draws."""
     turn = paper.ORIENTATIONS["all turned"]
-    position, state = turn(right["moving"].position), turn(right["moving"].state)
+    position, state = (
+        turn(right["constant_velocity"].position),
+        turn(right["constant_velocity"].state),
+    )
     known = paper.comparable(published, 1)
     assert not np.isnan(position[known]).any()
     theirs = paper.shares_above(published.error[1], [0.05, 0.2], known)

@@ -65,7 +65,7 @@ def test_little_noise_leaves_the_error_of_the_bound(seed):
 
 def test_twice_the_speed_halves_the_bound_of_the_position_and_leaves_that_of_the_velocity():
     # Exact for the static likelihood: H_p is proportional to v, and H_v does not depend on it.
-    slow, fast = (run([9], 3, likelihood="static", speed=(s, s)) for s in (1, 2))
+    slow, fast = (run([9], 3, likelihood="stationary", speed=(s, s)) for s in (1, 2))
     np.testing.assert_allclose(fast.bound_position, slow.bound_position / 2, rtol=1e-9)
     np.testing.assert_allclose(fast.bound_velocity, slow.bound_velocity, rtol=1e-9)
 
@@ -75,7 +75,7 @@ def test_an_array_along_x_cannot_make_the_published_dots(seed):
     dots = paper.published_figure4().position[15]
     static, moving = (
         run([15], 12, seed=seed, axis="x", likelihood=name).position[0]
-        for name in ("static", "moving")
+        for name in ("stationary", "constant_velocity")
     )
     assert static.min() > 2 * dots.max()
     # The motion helps, but not in every direction: twelve directions differ too much.
@@ -205,7 +205,7 @@ def test_the_saved_scores_are_those_of_all_readings_and_what_the_seed_gives():
     stored = read_json("noise_sweep_readings.json", folder=results)
     assert stored["levels"] == list(paper.scored_levels())
     reading = paper.sweep_readings()[1]  # a static one: the search is several times faster
-    assert reading.likelihood == "static"
+    assert reading.likelihood == "stationary"
     again = paper.figure4(
         paper.scored_levels(),
         stored["draws"],

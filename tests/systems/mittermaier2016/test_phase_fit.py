@@ -47,7 +47,7 @@ def test_without_noise_and_faults_it_finds_the_truth_and_stays_there():
 
 
 def test_what_makes_no_sense_is_refused_by_name(iq):
-    with pytest.raises(ValueError, match="moment must leave room for three samples"):
+    with pytest.raises(ValueError, match="time must leave room for three samples"):
         paper.fit_phases(iq, np.tile(truth(0.0), (RUNS, 1)), 0.0)
     with pytest.raises(ValueError, match="x must have shape"):
         paper.fit_phases(iq, truth(0.5), 0.5)

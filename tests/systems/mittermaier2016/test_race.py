@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib._data import read_json, results
-from dopplerlib.evaluation.intervals import Estimate, mean_interval, share_interval
+from dopplerlib.evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
 from dopplerlib.signal.laws import (
     crlb_frequency_std,
     crlb_frequency_std_dc,
@@ -78,7 +78,7 @@ def test_the_threshold_is_where_the_shares_cross(race):
 
 
 def test_a_share_that_falls_evenly_is_interpolated_evenly():
-    shares = [Estimate(p, p / 10, 1.0) for p in (1.0, 0.1, 0.001)]
+    shares = [ConfidenceInterval(p, p / 10, 1.0) for p in (1.0, 0.1, 0.001)]
     line = paper.Race(np.arange(3.0), np.ones(3), 10_000, {}, {"a": shares})
     found = line.threshold("a", 0.01)
     assert (found.value, found.low, found.high) == pytest.approx((1.5, 1.0, np.inf))
@@ -95,7 +95,7 @@ def test_an_interval_joins_errors_near_the_truth_and_outliers():
     x = np.exp(2j * np.pi * errors[:, None] / RACE_FS * np.arange(RACE_SAMPLES))
     ratio, outliers = paper.race_cell("maximum likelihood", x, f, 0)
     near = mean_interval([1.0, 4.0, 9.0, 0.0], 0.975)
-    share = share_interval(np.arange(4) < 1, 0.975)
+    share = proportion_interval(np.arange(4) < 1, 0.975)
     assert outliers == 1
     assert ratio.value == pytest.approx(bound * np.sqrt(np.mean(errors**2)), rel=1e-9)
     assert ratio.high == pytest.approx(bound * np.sqrt(near.high + share.high * 4000**2), rel=1e-9)

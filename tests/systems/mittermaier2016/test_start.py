@@ -9,7 +9,7 @@ from dopplerlib import RadarArray, crlb, doppler_shift, simulate
 from dopplerlib.systems import mittermaier2016 as paper
 
 RUNS = 400
-LIKELIHOODS = ("static", "moving")
+LIKELIHOODS = ("stationary", "constant_velocity")
 
 
 @pytest.fixture(scope="module", params=(51, 52))
@@ -56,20 +56,20 @@ def test_the_estimates_explain_the_record_better_than_the_truth_does():
 def test_the_printed_errors_are_smaller_than_nearly_all_of_ours(starts):
     """Of 10 000 starts 0.6 % are as good: 13 or more of 400 have a chance of 1e-6."""
     quoted = paper.quoted()
-    share = np.mean(starts["moving"].position <= quoted["position_error_norm_m"])
+    share = np.mean(starts["constant_velocity"].position <= quoted["position_error_norm_m"])
     assert share < 0.03
 
 
 def test_for_a_constant_state_the_box_decides(starts):
     """No start is identifiable, and a smaller room leaves none with so small an error."""
     printed = paper.quoted()["position_error_norm_m"]
-    assert not starts["static"].start.identifiable.any()
-    assert np.mean(starts["static"].position <= printed) > 0.01
+    assert not starts["stationary"].start.identifiable.any()
+    assert np.mean(starts["stationary"].position <= printed) > 0.01
     other = paper.table2_starts(
-        RUNS, rng=np.random.default_rng(51), likelihood="static", box=paper.start_box(1.0, 0.5)
+        RUNS, rng=np.random.default_rng(51), likelihood="stationary", box=paper.start_box(1.0, 0.5)
     )
     assert np.mean(other.position <= printed) < 0.005
-    assert np.median(other.position) > 1.2 * np.median(starts["static"].position)
+    assert np.median(other.position) > 1.2 * np.median(starts["stationary"].position)
 
 
 # Can the printed estimate be one?
@@ -85,7 +85,9 @@ def test_the_distance_is_that_of_the_shifts():
     apart = doppler_shift(table.x_ml, s.array) - doppler_shift(table.x0, s.array)
     assert np.sqrt(np.mean(apart**2)) > 1  # Hz
     expected = np.sqrt(10 * np.sum(apart**2)) / s.sigma_f
-    assert paper.start_misfit(table.x_ml, likelihood="static") == pytest.approx(expected, rel=1e-12)
+    assert paper.start_misfit(table.x_ml, likelihood="stationary") == pytest.approx(
+        expected, rel=1e-12
+    )
 
 
 def test_the_chance_to_beat_the_truth_is_that_of_half_the_distance():
@@ -103,11 +105,11 @@ def test_the_chance_to_beat_the_truth_is_that_of_half_the_distance():
 
 def test_rounding_is_made_the_most_of():
     table = paper.table2()
-    least = paper.start_misfit(table.x_ml, likelihood="static", rounding=0.0005)
+    least = paper.start_misfit(table.x_ml, likelihood="stationary", rounding=0.0005)
     rng = np.random.default_rng(55)
     corners = table.x_ml + 0.0005 * rng.choice([-1, 1], (500, 6))
-    moved = [paper.start_misfit(x, likelihood="static") for x in corners[:100]]
-    assert least < min(moved) < paper.start_misfit(table.x_ml, likelihood="static")
+    moved = [paper.start_misfit(x, likelihood="stationary") for x in corners[:100]]
+    assert least < min(moved) < paper.start_misfit(table.x_ml, likelihood="stationary")
 
 
 @pytest.mark.parametrize("likelihood", LIKELIHOODS)
@@ -125,7 +127,7 @@ def test_the_record_that_is_needed_is_the_shortest_one(place):
     array = RadarArray(np.vstack([s.array.positions, extra]))
     needed = paper.samples_needed(array=array)
     bounds = [
-        np.sqrt(np.trace(crlb(s.x0, array, s.sigma_f, k, s.T, "moving")[:3, :3]))
+        np.sqrt(np.trace(crlb(s.x0, array, s.sigma_f, k, s.T, "constant_velocity")[:3, :3]))
         for k in (needed - 1, needed)
     ]
     assert bounds[1] <= printed < bounds[0]

@@ -159,7 +159,7 @@ def test_a_run_is_the_filter_with_the_printed_settings():
     # One interval back along its own velocity.
     before = paper.table2().x_ml.copy()
     before[:3] -= s.T * before[3:]
-    track = ekf(z, s.array, before, s.P0, s.T, s.sigma_p, s.sigma_f)
+    track = ekf(z, s.array, before, s.P0, s.T, s.sigma_a, s.sigma_f)
     np.testing.assert_array_equal(result.truth, truth)
     np.testing.assert_array_equal(result.time, s.time)
     # The start is moved back once by a solver and once by hand: 1e-16 m apart.

@@ -43,7 +43,7 @@ def test_the_path_is_that_of_the_paper_and_ends_where_the_report_says():
 
 def test_the_settings_are_those_of_the_paper_but_for_the_ring():
     ours, paper = student.scenario(), mittermaier2016.scenario()
-    for name in ("T", "sigma_f", "sigma_p"):
+    for name in ("T", "sigma_f", "sigma_a"):
         assert getattr(ours, name) == getattr(paper, name)
     np.testing.assert_array_equal(ours.P0, paper.P0)
     assert ours.array.wavelength == paper.array.wavelength
@@ -143,7 +143,7 @@ def test_with_the_derived_jacobian_it_is_the_filter_of_the_library(plane):
     s = student.scenario(plane)
     truth, z = simulate(s, 16, rng=np.random.default_rng(5))
     start = truth[0] + [0.05, -0.02, 0.03, 0.05, 0.02, -0.02]
-    settings = s.array, start, s.P0, s.T, s.sigma_p, s.sigma_f
+    settings = s.array, start, s.P0, s.T, s.sigma_a, s.sigma_f
     ours = ekf(z, *settings)
     theirs = student.student_ekf(z, *settings, jacobian="derived")
     # 1000 steps with a covariance of condition 1e8 and more leave half of the digits.

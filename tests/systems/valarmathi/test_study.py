@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import norm
 
 from dopplerlib._data import read_lines, results
-from dopplerlib.evaluation.intervals import Estimate, mean_interval, share_interval
+from dopplerlib.evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
 from dopplerlib.systems import valarmathi as system
 from dopplerlib.systems.valarmathi import study as made
 from dopplerlib.systems.valarmathi.published import PATHS
@@ -248,7 +248,7 @@ def test_no_algorithm_fails_from_0_dB_on(study):
             limit = system.failure_limit(*shares[path, a])
             assert -8 < limit.low < limit.value < limit.high < -2
             # What the coarse study has at -5 dB fits to the fine one, with another 100 runs.
-            coarse = share_interval(whole[1] > OWN.failed_rmse, 1 - FALSE_ALARM)
+            coarse = proportion_interval(whole[1] > OWN.failed_rmse, 1 - FALSE_ALARM)
             fine = shares[path, a][1][int(np.flatnonzero(shares[path, a][0] == -5)[0])]
             assert coarse.low <= fine.high and fine.low <= coarse.high
 
@@ -263,7 +263,7 @@ def test_one_sensor_fails_where_two_fail():
 
 def test_a_limit_lies_where_the_share_passes_it_for_the_last_time():
     def shares(*values):
-        return [Estimate(v, max(v - 0.02, 0.0), min(v + 0.02, 1.0)) for v in values]
+        return [ConfidenceInterval(v, max(v - 0.02, 0.0), min(v + 0.02, 1.0)) for v in values]
 
     found = system.failure_limit([0, 1, 2, 3], shares(0.9, 0.04, 0.09, 0.0), 0.05)
     assert found.value == pytest.approx(2 + 4 / 9)

@@ -1,14 +1,14 @@
-"""How often `ml_start` finds the global optimum, how fast, and what SciPy needs for the same.
+"""How often `ml_initialize` finds the global optimum, how fast, and what SciPy needs for that.
 
-``python benchmarks/ml_start.py [scenarios [SciPy scenarios]]`` prints Markdown to standard output
-and progress to standard error. With 1000 and 60, the defaults, it takes half an hour.
+``python benchmarks/ml_initialize.py [scenarios [SciPy scenarios]]`` prints Markdown to standard
+output and progress to standard error. With 1000 and 60, the defaults, it takes half an hour.
 
-The optimum is the least cost that anybody found: `ml_start`; 300 refinements from random states by
-the compiled Levenberg-Marquardt of the library; and, for the first scenarios, SciPy's
+The optimum is the least cost that anybody found: `ml_initialize`; 300 refinements from random
+states by the compiled Levenberg-Marquardt of the library; and, for the first scenarios, SciPy's
 `least_squares` with an analytic Jacobian from 100 random states. Times are processor time, of one
-thread: those of `ml_start` of the whole batch and its median over rounds, those of SciPy of all its
-fits. How many starts SciPy needs follows from the share f of its starts that reach the optimum, in
-each scenario: n starts succeed with probability 1 - (1 - f)^n.
+thread: those of `ml_initialize` of the whole batch and its median over rounds, those of SciPy of
+all its fits. How many starts SciPy needs follows from the share f of its starts that reach the
+optimum, in each scenario: n starts succeed with probability 1 - (1 - f)^n.
 """
 
 import os
@@ -21,7 +21,7 @@ from numba import njit
 from scipy.optimize import least_squares
 from scipy.stats import beta
 
-from dopplerlib import RadarArray, doppler_shift, ml_start
+from dopplerlib import RadarArray, doppler_shift, ml_initialize
 from dopplerlib.estimation import _ml_refine
 from dopplerlib.kernels import doppler as kernel
 
@@ -30,10 +30,10 @@ LINE, RING = RadarArray.linear(5, 0.4), RadarArray.ring(6, 0.2)
 SPACE = np.array([[0.1, -0.75, -0.75, -2, -2, -2], [1.5, 0.75, 0.75, 2, 2, 2]])
 PLANE = SPACE * [1, 1, 0, 1, 1, 0]
 CASES = {
-    "line of five, 2-D, static": (LINE, PLANE, "static"),
-    "line of five, 2-D, moving": (LINE, PLANE, "moving"),
-    "ring of six, static": (RING, SPACE, "static"),
-    "ring of six, moving": (RING, SPACE, "moving"),
+    "line of five, 2-D, static": (LINE, PLANE, "stationary"),
+    "line of five, 2-D, moving": (LINE, PLANE, "constant_velocity"),
+    "ring of six, static": (RING, SPACE, "stationary"),
+    "ring of six, moving": (RING, SPACE, "constant_velocity"),
 }
 LEVELS = np.logspace(-2, 0, 5)  # standard deviations in Hz; a fifth of the scenarios each
 RANDOM_STARTS = 300
@@ -50,7 +50,7 @@ def main():
     print(f"load {', '.join(f'{load:.1f}' for load in os.getloadavg())} at the start.\n")
     print(
         "| | optimum found | 95 % interval | ms a solve | SciPy: ms a fit | starts for the same "
-        "rate | ms | ÷ ml_start | SciPy, 100 starts: better / as good / worse |\n"
+        "rate | ms | ÷ ml_initialize | SciPy, 100 starts: better / as good / worse |\n"
         "|---|---|---|---|---|---|---|---|---|"
     )
     for name, case in CASES.items():
@@ -114,14 +114,14 @@ def measurements(case, scenarios):
     x[:, 3:] = np.where(approaching, v, -v)
     sigma_f = LEVELS[np.arange(scenarios) % len(LEVELS)]
     path = np.repeat(x[:, None], SAMPLES, axis=1)
-    if likelihood == "moving":
+    if likelihood == "constant_velocity":
         path[..., :3] += (T * np.arange(SAMPLES))[:, None] * x[:, None, 3:]
     shifts = doppler_shift(path, array)
     return shifts + sigma_f[:, None, None] * rng.standard_normal(shifts.shape), sigma_f
 
 
 def ours(z, sigma_f, case):
-    """Return the costs of `ml_start` and its time for one solve in ms."""
+    """Return the costs of `ml_initialize` and its time for one solve in ms."""
     array, box, likelihood = case
     cost = np.empty(len(z))
     times = []
@@ -129,7 +129,7 @@ def ours(z, sigma_f, case):
         began = time.process_time()
         for sigma in LEVELS:
             rows = sigma_f == sigma
-            cost[rows] = ml_start(z[rows], array, sigma, T, box, likelihood, workers=1).cost
+            cost[rows] = ml_initialize(z[rows], array, sigma, T, box, likelihood, workers=1).cost
         times.append(time.process_time() - began)
     return cost, 1e3 * np.median(times[1:]) / len(z)
 
@@ -143,7 +143,7 @@ def random_starts(z, sigma_f, case, rng):
     """Return the least cost of refinements from random states."""
     array, box, likelihood = case
     t, w, scatter = T * np.arange(len(z)), np.full(z.shape, 1 / sigma_f), 0.0
-    if likelihood == "static":
+    if likelihood == "stationary":
         mean = z.mean(axis=0)[None]
         scatter = np.sum((z - mean) ** 2) / sigma_f**2
         z, w, t = mean, w[:1] * np.sqrt(len(z)), t[:1]
@@ -160,7 +160,7 @@ def scipy_fits(z, sigma_f, case, rng):
     free = box[0] < box[1]
     F = np.eye(6) + np.zeros((len(z), 6, 6))
     scatter = 0.0
-    if likelihood == "moving":
+    if likelihood == "constant_velocity":
         F[:, :3, 3:] = (T * np.arange(len(z)))[:, None, None] * np.eye(3)
     else:
         mean = z.mean(axis=0)[None]

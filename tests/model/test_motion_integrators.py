@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from dopplerlib.model.kinematics import (
+from dopplerlib.model.motion import (
+    cwna_process_noise,
+    cwnj_process_noise,
     nca_transition,
     ncv_transition,
     velocity_step_noise,
-    wna_process_noise,
-    wnj_process_noise,
 )
 
 T, q = 0.3, 0.7
-FAMILIES = [(2, ncv_transition, wna_process_noise), (3, nca_transition, wnj_process_noise)]
+FAMILIES = [(2, ncv_transition, cwna_process_noise), (3, nca_transition, cwnj_process_noise)]
 
 
 def van_loan(n):
@@ -72,10 +72,10 @@ def test_the_orders_hold_the_same_numbers_at_other_places(n):
         (ncv_transition, (T, 0), "dim"),
         (ncv_transition, (T, 2, "blocks"), "order"),
         (nca_transition, (-1.0,), "T"),
-        (wna_process_noise, (T, -1.0), "q"),
-        (wna_process_noise, (-1.0, 1.0), "T"),
-        (wnj_process_noise, (np.nan, 1.0), "T"),
-        (wnj_process_noise, ([T], 1.0), "T"),
+        (cwna_process_noise, (T, -1.0), "q"),
+        (cwna_process_noise, (-1.0, 1.0), "T"),
+        (cwnj_process_noise, (np.nan, 1.0), "T"),
+        (cwnj_process_noise, ([T], 1.0), "T"),
         (velocity_step_noise, (0.0,), "w"),
     ],
 )
