@@ -78,13 +78,18 @@ def shaped(*shape, check=_checks.moderate):
     return partial(check, shape=shape)
 
 
+def _covariance(name, value, shape):
+    return _checks.covariance(name, _checks.moderate(name, value), shape[0])
+
+
 def exactly(*shape, check=_checks.moderate):
-    """Return a check of arrays of `shape`, None for any length."""
+    """Return a check of arrays of `shape`, None for any length but zero."""
 
     def of_shape(name, value):
         array = check(name, value, shape)
-        if array.ndim != len(shape):
-            raise ValueError(f"{name} must have {len(shape)} axes, got shape {array.shape}")
+        if array.ndim != len(shape) or not array.size:
+            wanted = f"{len(shape)} axes and something in it"
+            raise ValueError(f"{name} must have {wanted}, got shape {array.shape}")
         return array
 
     return of_shape
@@ -97,11 +102,13 @@ Runs = Annotated[int, partial(_checks.count, most=10**6)]
 Positive = Annotated[float, _checks.moderate_number]
 Real = Annotated[float, partial(_checks.one_number, check=_checks.moderate)]
 Probability = Annotated[float, _checks.probability]
-# Arrays of such numbers.
-Reals = Annotated[ArrayLike, _checks.moderate]
-State = Annotated[ArrayLike, exactly(6)]
-States = Annotated[ArrayLike, shaped(6)]
-# An array_like for the caller, an array for a type checker: booleans, and any numbers, NaN too.
+# Arrays of such numbers: an array_like for the caller, an array for a type checker.
+Reals = Annotated[FloatArray, _checks.moderate]
+State = Annotated[FloatArray, exactly(6)]
+States = Annotated[FloatArray, shaped(6)]
+Covariance = Annotated[FloatArray, exactly(6, 6, check=_covariance)]  # of a state
+Measurements = Annotated[FloatArray, exactly(None, None, None)]  # runs, times, sensors
+# Booleans, and any numbers, NaN too.
 Booleans = Annotated[BoolArray, _checks.booleans]
 Array = Annotated[FloatArray, _checks.numbers]
 
@@ -133,7 +140,7 @@ def _check(hint):
         return _items(_check(parts[0])) if parts[-1] is ... else _fixed([*map(_check, parts)])
     if kind is dict and parts:
         return _mapping(*map(_check, parts))
-    if isinstance(kind, type):
+    if isinstance(kind, type) and kind is not Any:
         return _PLAIN.get(kind) or partial(_checks.instance, kind=kind)
     return None
 

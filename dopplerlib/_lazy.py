@@ -36,6 +36,11 @@ def attach(package, path, home=()):
     return __getattr__, __dir__
 
 
+def by_name(modules):
+    """Return {name: module} of {module: names, with spaces between them}, for `attach`."""
+    return {name: module for module, names in modules.items() for name in names.split()}
+
+
 def require(library, extra):
     """Raise unless a library that an extra of this one brings is installed.
 

@@ -21,7 +21,8 @@ def claims_of(document):
 
 
 def evidence_of(document, seed):
-    module = import_module(f"dopplerlib.systems.{document}.claims")
+    room = import_module(f"dopplerlib.systems.{document}")
+    module = room.evidence if "evidence" in dir(room) else room.claims
     return module.evidence(rng=np.random.default_rng(seed))
 
 

@@ -4,7 +4,7 @@ import copy
 import inspect
 import pickle
 from collections.abc import Callable, Iterable
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import pytest
@@ -12,7 +12,9 @@ import pytest
 from dopplerlib._hints import (
     Booleans,
     Count,
+    Covariance,
     Index,
+    Measurements,
     Positive,
     Probability,
     Real,
@@ -169,6 +171,8 @@ TAKEN = [
     (tuple[float, str], [1, "x"], (1.0, "x")),
     (dict[str, float], {"a": 1}, {"a": 1.0}),
     (Callable[[float], float], abs, abs),
+    (Any, "x", "x"),
+    (dict[str, Any], {"a": 1}, {"a": 1}),
     (Literal["auto"] | float, 2, 2.0),
     (Literal["auto"] | float, "auto", "auto"),
     (Pair | float, 2, 2.0),
@@ -195,6 +199,8 @@ ARRAYS = [
     (State, [0] * 6, (6,)),
     (States, [[0] * 6] * 2, (2, 6)),
     (Booleans, [True], (1,)),
+    (Covariance, np.eye(6), (6, 6)),
+    (Measurements, np.ones((2, 3, 6)), (2, 3, 6)),
     (FloatArray, np.ones(3), (3,)),
     (Annotated[ArrayLike, shaped(None, 2)], np.ones((4, 3, 2)), (4, 3, 2)),
     (Annotated[ArrayLike, exactly(None, 2)], np.ones((3, 2)), (3, 2)),
@@ -247,6 +253,10 @@ REFUSED = [
     (FloatArray, [1.0]),
     (Booleans, [1]),
     (Annotated[ArrayLike, exactly(None, 2)], np.ones((4, 3, 2))),
+    (Annotated[ArrayLike, exactly(None, 2)], np.ones((0, 2))),
+    (Covariance, -np.eye(6)),
+    (Covariance, [np.eye(6)] * 2),
+    (Measurements, np.ones((3, 6))),
 ]
 
 

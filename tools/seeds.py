@@ -17,6 +17,7 @@ from dopplerlib.replication.verdicts import judge_all
 from tools.command import parser, start
 
 ROOT = Path(__file__).resolve().parents[1]
+_NAMES = "evidence.py", "evidence", "claims.py"
 
 
 def documents(root=ROOT):
@@ -24,14 +25,17 @@ def documents(root=ROOT):
     return [
         path.parent.name
         for path in sorted((root / "data").glob("*/claims.toml"))
-        if (root / "dopplerlib" / "systems" / path.parent.name / "claims.py").exists()
+        if any(
+            (root / "dopplerlib" / "systems" / path.parent.name / name).exists() for name in _NAMES
+        )
     ]
 
 
 def verdicts(document, seed):
     """Return the verdict on every claim, by its id, with one draw of all noise."""
     claims = read_claims(ROOT / "data" / document / "claims.toml")
-    module = import_module(f"dopplerlib.systems.{document}.claims")
+    room = import_module(f"dopplerlib.systems.{document}")
+    module = room.evidence if "evidence" in dir(room) else room.claims
     evidence = module.evidence(rng=np.random.default_rng(seed))
     return {one.claim.id: one.verdict for one in judge_all(claims, evidence)}
 

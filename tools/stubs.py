@@ -1,6 +1,7 @@
 """Write the stubs of the packages: what they load when it is asked for, for editors and mypy."""
 
 import ast
+from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
 
@@ -14,7 +15,8 @@ def stubs():
     """Return {path: text} of the stub of every package that has nothing but what it loads."""
     found = {}
     for path in sorted(LIBRARY.rglob("__init__.py")):
-        home = dopplerlib._HOME if path.parent == LIBRARY else {}
+        package = import_module(".".join(path.relative_to(LIBRARY.parent).parent.parts))
+        home = getattr(package, "_HOME", {})
         if not home and _gives_names(path):
             continue
         modules = sorted(m.name for m in iter_modules([str(path.parent)]) if m.name[0] != "_")
@@ -23,8 +25,9 @@ def stubs():
         by_module = sorted(home.items(), key=lambda item: (item[1], item[0].islower(), item[0]))
         lines += [f"from .{module} import {name} as {name}" for name, module in by_module]
         if home:
-            names = "".join(f'    "{name}",\n' for name in dopplerlib.__all__)
-            lines += ["", f"__all__ = [\n{names}]", "__version__: str"]
+            names = "".join(f'    "{name}",\n' for name in package.__all__)
+            lines += ["", f"__all__ = [\n{names}]"]
+            lines += ["__version__: str"] * hasattr(package, "__version__")
         found[path.with_suffix(".pyi")] = "\n".join(lines) + "\n"
     return found
 

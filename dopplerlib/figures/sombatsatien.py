@@ -23,14 +23,14 @@ def symptoms(result, told, run=0):
     """
     x = result.track.x
     panels = (
-        ("distance x (m)", x[..., 0], result.truth[:, 0], told["final_x"]),
+        ("distance x (m)", x[..., 0], result.truth[:, 0], told.final_x),
         (
             "speed (m/s)",
             np.linalg.norm(x[..., 3:], axis=-1),
             np.linalg.norm(result.truth[:, 3:], axis=-1),
-            np.linalg.norm(told["final_velocity"]),
+            np.linalg.norm(told.final_velocity),
         ),
-        ("position error (m)", result.position_error, None, told["final_position_error"]),
+        ("position error (m)", result.position_error, None, told.final_position_error),
     )
     with styled(7.0, 2.9) as figure:
         axes = figure.subplots(1, 3)

@@ -10,7 +10,7 @@ from dopplerlib import doppler_jacobian, ekf
 from dopplerlib.evaluation.checklist import Check, complex_step_jacobian, filter_checklist
 from dopplerlib.systems import sombatsatien as student
 
-SCENARIO = student.scenario("x")
+SCENARIO = student.ring_scenario("x")
 RIGHT = partial(student.student_ekf, jacobian="derived")
 
 

@@ -8,15 +8,15 @@ from dopplerlib.systems import sombatsatien as student
 
 def test_symptoms_show_the_runs_the_truth_and_the_end_of_the_report():
     result = student.post_mortem(16, rng=np.random.default_rng(1), jacobian="derived")
-    told = student.reported()
+    told = student.reported().run
     distance, speed, error = draw.symptoms(result, told, run=3).axes
     lines = {line.get_label(): line for line in distance.get_lines()}
     np.testing.assert_array_equal(lines["one run"].get_ydata(), result.track.x[3, :, 0])
     np.testing.assert_array_equal(lines["truth"].get_ydata(), result.truth[:, 0])
-    assert lines["report, at the end"].get_ydata() == told["final_x"]
+    assert lines["report, at the end"].get_ydata() == told.final_x
     assert "truth" not in [line.get_label() for line in error.get_lines()]
-    assert error.get_lines()[-1].get_ydata() == told["final_position_error"]
-    assert speed.get_lines()[-1].get_ydata() == np.linalg.norm(told["final_velocity"])
+    assert error.get_lines()[-1].get_ydata() == told.final_position_error
+    assert speed.get_lines()[-1].get_ydata() == np.linalg.norm(told.final_velocity)
 
 
 def test_a_repair_stands_at_the_median_and_the_central_95_percent_of_its_runs():

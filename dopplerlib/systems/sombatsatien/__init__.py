@@ -3,50 +3,16 @@
 Doppler-only tracking implementation, a report with a notebook on Mittermaier et al. (2016).
 """
 
-from ..._lazy import attach
-from .claims import evidence
-from .local_start import local_start
-from .post_mortem import (
-    PostMortem,
-    consistent_runs,
-    final_bound,
-    measures,
-    mirrored,
-    nearer_to_twin,
-    outcomes,
-    post_mortem,
-    repairs,
-)
-from .published import (
-    StartSettings,
-    reported,
-    reported_outcomes,
-    reported_record,
-    scenario,
-    start_settings,
-)
-from .student_filter import student_ekf, student_jacobian
+from ..._lazy import attach, by_name
 
-__all__ = [
-    "PostMortem",
-    "StartSettings",
-    "consistent_runs",
-    "evidence",
-    "final_bound",
-    "local_start",
-    "measures",
-    "mirrored",
-    "nearer_to_twin",
-    "outcomes",
-    "post_mortem",
-    "repairs",
-    "reported",
-    "reported_outcomes",
-    "reported_record",
-    "scenario",
-    "start_settings",
-    "student_ekf",
-    "student_jacobian",
-]
-
-__getattr__, __dir__ = attach(__name__, __path__)
+_HOME = by_name(
+    {
+        "published": "Reported ReportedRun ReportedStart reported",
+        "descent": "local_start",
+        "student_filter": "student_ekf student_jacobian",
+        "variants": "PostMortem consistent_runs post_mortem repairs reported_record ring_scenario",
+        "diagnosis": "final_bound measures mirrored nearer_to_twin outcomes reported_outcomes",
+    }
+)
+__all__ = sorted(_HOME)
+__getattr__, __dir__ = attach(__name__, __path__, _HOME)

@@ -1,22 +1,21 @@
 """What the report states, from ``data/sombatsatien``."""
 
-from functools import partial
+from functools import cache, partial
+from typing import Annotated
 
-import numpy as np
-
-from ... import _checks
 from ..._data import data, read_toml
+from ..._hints import Count, Index, Positive, Real, State, checked, exactly
 from ..._records import record
-from ...model.doppler import doppler_shift
-from ...model.radar_array import RadarArray
+from ..._typing import FloatArray
 from ...model.scenario import Scenario
 
 data_file = partial(data, "sombatsatien")
 
 
+@checked
 @record
-class StartSettings:
-    """How the report finds a start, and the start that it found.
+class ReportedStart:
+    """How the report finds an initial estimate, and the estimate that it found.
 
     Attributes
     ----------
@@ -24,107 +23,102 @@ class StartSettings:
         Number of first samples whose average is explained.
     guess : ndarray, shape (6,)
         Where the one search begins.
-    box : tuple of ndarray, shape (6,)
-        Lower and upper bounds of the state.
+    lower, upper : ndarray, shape (6,)
+        Bounds of the state.
     estimate : ndarray, shape (6,)
         The start that is printed.
     """
 
-    samples: int
-    guess: np.ndarray
-    box: tuple
-    estimate: np.ndarray
+    samples: Count
+    guess: State
+    lower: State
+    upper: State
+    estimate: State
+
+    @property
+    def box(self) -> tuple:
+        """Lower and upper bounds of the state, as a start takes them."""
+        return self.lower, self.upper
 
 
-def scenario(plane="z"):
-    """Return the simulation.
+@checked
+@record
+class ReportedRun:
+    """What the report states of its one run, in m and m/s.
 
-    Parameters
+    Attributes
     ----------
-    plane : {"z", "x"}
-        Plane of the ring: z = 0 as in the report, or x = 0 as in the paper that it replicates,
-        with the first sensor on +y.
+    tracked : int
+        Number of samples that the filter takes.
+    position_rmse, velocity_rmse : float
+        Root mean square errors over them.
+    final_true_x, final_x : float
+        Distance x at the last one, true and estimated.
+    final_position_error : float
+        There.
+    final_velocity : ndarray, shape (3,)
+        Estimated there.
+    initial_position_error : float
+        Read off a curve by the report itself.
+    settled_position_error : ndarray, shape (2,)
+        The same: between which values.
+    """
+
+    tracked: Count
+    position_rmse: Positive
+    velocity_rmse: Positive
+    final_true_x: Real
+    final_x: Real
+    final_position_error: Positive
+    final_velocity: Annotated[FloatArray, exactly(3)]
+    initial_position_error: Positive
+    settled_position_error: Annotated[FloatArray, exactly(2)]
+
+
+@checked
+@record
+class Reported:
+    """All that the report states and a computer can use.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        The simulation.
+    start : ReportedStart
+        Its initial estimate.
+    seed : int
+        Of the noise, in NumPy's legacy generator.
+    run : ReportedRun
+        Its results.
+    sources : dict of str to str
+        Where each of them stands, and how it was obtained.
+    """
+
+    scenario: Scenario
+    start: ReportedStart
+    seed: Index
+    run: ReportedRun
+    sources: dict[str, str]
+
+
+@cache
+def reported() -> Reported:
+    """Return what the report states.
 
     Returns
     -------
-    Scenario
+    Reported
 
-    Raises
-    ------
-    ValueError
-        If `plane` is neither.
+    Examples
+    --------
+    >>> reported().run.final_x, reported().sources["run"]
+    (-0.1816, 'Section 4 and Fig 6, and the notebook; errors at the start and settled read off')
     """
-    _checks.one_of("plane", plane, ("z", "x"))
-    s = Scenario.from_toml(data_file("scenario.toml"))
-    if plane == "z":
-        return s
-    radius = float(np.linalg.norm(s.array.positions[0]))
-    array = RadarArray.ring(len(s.array), radius, normal="x", wavelength=s.array.wavelength)
-    return Scenario(array, s.x0, s.T, s.samples, s.sigma_f, s.sigma_a, s.P0)
-
-
-def start_settings():
-    """Return the settings of the report's start.
-
-    Returns
-    -------
-    StartSettings
-    """
-    start = _tables()["start"]
-    return StartSettings(
-        start["samples"],
-        np.array(start["guess"]),
-        (np.array(start["lower"]), np.array(start["upper"])),
-        np.array(start["estimate"]),
+    tables = read_toml("sombatsatien", "reported.toml")
+    return Reported(
+        scenario=Scenario.from_toml(data_file("scenario.toml")),
+        start=ReportedStart(**tables["start"]),
+        seed=tables["noise"]["seed"],
+        run=ReportedRun(**tables["result"]),
+        sources=read_toml("sombatsatien", "sources.toml"),
     )
-
-
-def reported():
-    """Return the results of the report, by name.
-
-    Returns
-    -------
-    dict
-        In m and m/s; see ``data/sombatsatien/README.md``.
-    """
-    return _tables()["result"]
-
-
-def reported_outcomes():
-    """Return the results of the report under the names that `outcomes` uses for ours.
-
-    Returns
-    -------
-    dict of str to float
-        By name and unit.
-    """
-    told = reported()
-    return {
-        "position RMSE (m)": told["position_rmse"],
-        "velocity RMSE (m/s)": told["velocity_rmse"],
-        "final position error (m)": told["final_position_error"],
-        "final x (m)": told["final_x"],
-        **{f"final v_{c} (m/s)": v for c, v in zip("xyz", told["final_velocity"], strict=True)},
-    }
-
-
-def reported_record():
-    """Return the measurements of the report's one run, noise included.
-
-    Returns
-    -------
-    ndarray, shape (1000, 6)
-        Doppler measurements in Hz.
-
-    Notes
-    -----
-    The notebook fixes the seed of NumPy's legacy generator, whose numbers never change.
-    """
-    s = scenario()
-    noise = np.random.RandomState(_tables()["noise"]["seed"])
-    noise = noise.standard_normal((s.samples, len(s.array)))
-    return doppler_shift(s.truth, s.array) + s.sigma_f * noise
-
-
-def _tables():
-    return read_toml("sombatsatien", "reported.toml")

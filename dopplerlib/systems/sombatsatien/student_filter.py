@@ -1,18 +1,26 @@
 """The extended Kalman filter of the report, with its Jacobian as it is or as it should be."""
 
+from typing import Literal
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Covariance, Measurements, Positive, States, checked
+from ..._typing import FloatArray
 from ...estimation import recursion
 from ...estimation.track import Track
 from ...kernels.doppler import doppler_shift_and_gradient
 from ...model.doppler import doppler_jacobian
 from ...model.motion import constant_velocity
+from ...model.radar_array import RadarArray
 
-JACOBIANS = ("as reported", "derived")
+Jacobian = Literal["as reported", "derived"]
 
 
-def student_jacobian(x, array, jacobian="as reported"):
+@checked
+def student_jacobian(
+    x: States, array: RadarArray, jacobian: Jacobian = "as reported"
+) -> FloatArray:
     """Return the derivative of the Doppler shifts, or what the report takes for it.
 
     Parameters
@@ -33,12 +41,29 @@ def student_jacobian(x, array, jacobian="as reported"):
     ------
     ValueError
         If `jacobian` is neither, or an argument is refused by `doppler_jacobian`.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray
+    >>> ring, x = RadarArray.ring(6, 0.2, normal="z"), [0.8, 0.1, 0.1, -0.7, -0.1, 0.0]
+    >>> bool((student_jacobian(x, ring) == -student_jacobian(x, ring, "derived"))[:, :3].all())
+    True
     """
     return doppler_jacobian(x, array) * _signs(jacobian)
 
 
-def student_ekf(z, array, x0, P0, T, sigma_a, sigma_f, jacobian="as reported"):
-    """Track a target as the report does: predict, then update in the form of Joseph.
+@checked
+def student_ekf(
+    z: Measurements,
+    array: RadarArray,
+    x0: States,
+    P0: Covariance,
+    T: Positive,
+    sigma_a: Positive,
+    sigma_f: Positive,
+    jacobian: Jacobian = "as reported",
+) -> Track:
+    """Track a target as the report does: predict, then update in Joseph form.
 
     Parameters
     ----------
@@ -68,11 +93,19 @@ def student_ekf(z, array, x0, P0, T, sigma_a, sigma_f, jacobian="as reported"):
     ------
     ValueError
         If an argument has the wrong shape or is not finite, or `jacobian` is unknown.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray
+    >>> ring = RadarArray.ring(6, 0.2, normal="z")
+    >>> z, x0 = np.full((1, 3, 6), 100.0), [0.8, 0.1, 0.1, -0.7, -0.1, 0.0]
+    >>> student_ekf(z, ring, x0, 0.1 * np.eye(6), 0.001, 0.4, 0.4).x.shape
+    (1, 3, 6)
     """
-    z = _checks.finite("z", z, (None, None, len(array)))
+    _checks.check_shape("z", z, (len(array),))
     runs, samples, m = z.shape
-    x = np.broadcast_to(_checks.finite("x0", x0, (6,)), (runs, 6))
-    P = np.broadcast_to(_checks.covariance("P0", P0, 6), (runs, 6, 6))
+    x = _checks.each_run("x0", x0, (runs,), (6,))
+    P = np.broadcast_to(P0, (runs, 6, 6))
     F, Q = constant_velocity(T, sigma_a)
     signs, sensors = _signs(jacobian), (*array.positions.T, array.doppler_per_speed)
     R = sigma_f**2 * np.eye(m)
@@ -96,11 +129,10 @@ def student_ekf(z, array, x0, P0, T, sigma_a, sigma_f, jacobian="as reported"):
         nis = np.sum(innovation * solved[..., 6], axis=-1)
         return (x, P), (x, P, innovation, S, nis)
 
-    track = recursion.scan(step, (x, P), range(samples), axis=1)
-    return Track(*track, np.ones((runs, samples), bool))
+    x, P, innovation, S, nis = recursion.scan(step, (x, P), range(samples), axis=1)
+    return Track(x, P, innovation, S, nis, np.ones((runs, samples), bool))
 
 
 def _signs(jacobian):
     """Return what the columns of the derivative are multiplied with."""
-    reported = _checks.one_of("jacobian", jacobian, JACOBIANS) == "as reported"
-    return np.repeat([-1.0 if reported else 1.0, 1.0], 3)
+    return np.repeat([-1.0 if jacobian == "as reported" else 1.0, 1.0], 3)

@@ -20,7 +20,7 @@ def record():
 @pytest.fixture(scope="module")
 def rerun(record):
     """Return the report's run, from the start that it prints, with its noise."""
-    return student.post_mortem(1, rng=None, z=record[None], start=student.start_settings().estimate)
+    return student.post_mortem(1, rng=None, z=record[None], start=student.reported().start.estimate)
 
 
 @pytest.fixture(scope="module")
@@ -32,17 +32,17 @@ def runs():
 
 
 def test_the_path_is_that_of_the_paper_and_ends_where_the_report_says():
-    s = student.scenario()
+    s = student.reported().scenario
     np.testing.assert_array_equal(s.x0, mittermaier2016.scenario().x0)
     assert s.truth[-1, 0] == pytest.approx(
-        student.reported()["final_true_x"],
+        student.reported().run.final_true_x,
         abs=5.001e-5,  # 0.08375 was rounded up
     )
-    assert s.samples - student.start_settings().samples == student.reported()["tracked"]
+    assert s.samples - student.reported().start.samples == student.reported().run.tracked
 
 
 def test_the_settings_are_those_of_the_paper_but_for_the_ring():
-    ours, paper = student.scenario(), mittermaier2016.scenario()
+    ours, paper = student.reported().scenario, mittermaier2016.scenario()
     for name in ("T", "sigma_f", "sigma_a"):
         assert getattr(ours, name) == getattr(paper, name)
     np.testing.assert_array_equal(ours.P0, paper.P0)
@@ -51,13 +51,13 @@ def test_the_settings_are_those_of_the_paper_but_for_the_ring():
 
 
 def test_the_ring_of_the_report_lies_in_another_plane_than_the_ring_of_the_paper():
-    assert (student.scenario().array.positions[:, 2] == 0).all()
-    assert student.scenario().array.positions[0, 0] == pytest.approx(0.2)
-    assert student.scenario("x").array == mittermaier2016.scenario().array
+    assert (student.reported().scenario.array.positions[:, 2] == 0).all()
+    assert student.reported().scenario.array.positions[0, 0] == pytest.approx(0.2)
+    assert student.ring_scenario("x").array == mittermaier2016.scenario().array
 
 
 def test_the_report_s_jacobian_is_wrong_in_the_sign_of_the_position_and_in_nothing_else():
-    s = student.scenario()
+    s = student.reported().scenario
     x = s.x0 + 0.1 * np.random.default_rng(2).standard_normal((20, 6))
     H = student.student_jacobian(x, s.array)
     true_H = complex_step_jacobian(x, s.array)
@@ -79,7 +79,7 @@ def test_the_printed_start_explains_the_record_of_its_seed(record):
     Of 200 records with other noise none comes near. The misfit at a minimum is flat, so rounding
     costs little; 0.001 Hz^2 would move it by less than a tenth of one standard deviation.
     """
-    s, settings = student.scenario(), student.start_settings()
+    s, settings = student.reported().scenario, student.reported().start
     _, others = simulate(s, 200, rng=np.random.default_rng(3))
     z = np.concatenate([record[None], others])[:, : settings.samples].mean(axis=1)
     misfit = np.sum((z - doppler_shift(settings.estimate, s.array)) ** 2, axis=-1)
@@ -96,21 +96,21 @@ def test_the_printed_start_explains_the_record_of_its_seed(record):
 
 def test_the_report_s_run_is_reproduced_from_its_start_and_its_noise(rerun):
     """Up to the rounding of the start, which 200 starts within it spread by more than this."""
-    told = student.reported()
-    assert rerun.position_rmse[0] == pytest.approx(told["position_rmse"], abs=2e-4)
-    assert rerun.velocity_rmse[0] == pytest.approx(told["velocity_rmse"], abs=2e-4)
-    assert rerun.position_error[0, -1] == pytest.approx(told["final_position_error"], abs=1e-3)
-    assert rerun.track.x[0, -1, 0] == pytest.approx(told["final_x"], abs=1e-3)
-    np.testing.assert_allclose(rerun.track.x[0, -1, 3:], told["final_velocity"], atol=2e-3)
+    told = student.reported().run
+    assert rerun.position_rmse[0] == pytest.approx(told.position_rmse, abs=2e-4)
+    assert rerun.velocity_rmse[0] == pytest.approx(told.velocity_rmse, abs=2e-4)
+    assert rerun.position_error[0, -1] == pytest.approx(told.final_position_error, abs=1e-3)
+    assert rerun.track.x[0, -1, 0] == pytest.approx(told.final_x, abs=1e-3)
+    np.testing.assert_allclose(rerun.track.x[0, -1, 3:], told.final_velocity, atol=2e-3)
 
 
 def test_the_derived_jacobian_alone_changes_all_of_it(record):
-    told = student.reported()
+    told = student.reported().run
     repaired = student.post_mortem(
-        1, rng=None, z=record[None], start=student.start_settings().estimate, jacobian="derived"
+        1, rng=None, z=record[None], start=student.reported().start.estimate, jacobian="derived"
     )
-    assert repaired.position_rmse[0] < 0.5 * told["position_rmse"]
-    assert repaired.velocity_rmse[0] < 0.5 * told["velocity_rmse"]
+    assert repaired.position_rmse[0] < 0.5 * told.position_rmse
+    assert repaired.velocity_rmse[0] < 0.5 * told.velocity_rmse
 
 
 # Many runs
@@ -126,7 +126,7 @@ def test_most_runs_lose_the_velocity_and_end_behind_the_platform(runs):
 
 def test_the_misfit_of_the_start_is_the_least_near_it():
     """A step to either side along any axis makes it worse, or leaves the box."""
-    s, settings = student.scenario(), student.start_settings()
+    s, settings = student.reported().scenario, student.reported().start
     _, z = simulate(s, 5, rng=np.random.default_rng(4))
     z = z[:, : settings.samples]
     x, misfit, converged = student.local_start(z, s.array, settings.guess, settings.box)
@@ -140,7 +140,7 @@ def test_the_misfit_of_the_start_is_the_least_near_it():
 @pytest.mark.parametrize("plane", ["z", "x"])
 def test_with_the_derived_jacobian_it_is_the_filter_of_the_library(plane):
     """Joseph's form with all sensors at once, against one sensor after the other."""
-    s = student.scenario(plane)
+    s = student.ring_scenario(plane)
     truth, z = simulate(s, 16, rng=np.random.default_rng(5))
     start = truth[0] + [0.05, -0.02, 0.03, 0.05, 0.02, -0.02]
     settings = s.array, start, s.P0, s.T, s.sigma_a, s.sigma_f
@@ -155,12 +155,14 @@ def test_with_the_derived_jacobian_it_is_the_filter_of_the_library(plane):
 
 
 def test_a_ring_in_the_plane_z_0_cannot_tell_a_target_from_its_mirror_image():
-    s = student.scenario()
+    s = student.reported().scenario
     x = s.x0 + 0.05 * np.random.default_rng(6).standard_normal((10, 6))
     np.testing.assert_allclose(
         doppler_shift(student.mirrored(x), s.array), doppler_shift(x, s.array), rtol=1e-12
     )
-    ours, image = (doppler_shift(y, student.scenario("x").array) for y in (x, student.mirrored(x)))
+    ours, image = (
+        doppler_shift(y, student.ring_scenario("x").array) for y in (x, student.mirrored(x))
+    )
     assert np.abs(ours - image).max() > 0.1
 
 
@@ -178,8 +180,8 @@ def test_the_repairs_share_their_noise_and_their_starts():
     # Seen from outside: the first innovations, corrected for what was predicted, are the noise.
     noise = [
         one.track.innovation[:, 0]
-        + doppler_shift(one.start + before(one.start), student.scenario(plane).array)
-        - doppler_shift(one.truth[0], student.scenario(plane).array)
+        + doppler_shift(one.start + before(one.start), student.ring_scenario(plane).array)
+        - doppler_shift(one.truth[0], student.ring_scenario(plane).array)
         for one, plane in ((result["sign"], "z"), (result["geometry"], "x"))
     ]
     np.testing.assert_allclose(*noise, atol=1e-9)
@@ -187,7 +189,9 @@ def test_the_repairs_share_their_noise_and_their_starts():
 
 def before(x):
     """Return how far these states move in an interval."""
-    return student.scenario().T * np.concatenate([x[:, 3:], np.zeros_like(x[:, 3:])], axis=1)
+    return student.reported().scenario.T * np.concatenate(
+        [x[:, 3:], np.zeros_like(x[:, 3:])], axis=1
+    )
 
 
 def test_what_is_told_of_a_run_is_what_the_report_tells(rerun):
@@ -218,7 +222,7 @@ def test_the_consistent_runs_are_consistent():
 @pytest.mark.parametrize("plane", ["z", "x"])
 def test_the_bound_is_reached_by_least_squares_from_the_truth(plane):
     """One Gauss-Newton step on the whole record; 200 runs give the rms within 10 %."""
-    s = student.scenario(plane)
+    s = student.ring_scenario(plane)
     truth, z = simulate(s, 200, rng=np.random.default_rng(10))
     at_end = s.time - s.time[-1]
     H = complex_step_jacobian(truth, s.array)
@@ -234,7 +238,7 @@ def test_a_long_start_uses_a_tenth_of_the_record_and_brings_its_covariance():
     long = student.post_mortem(
         16, rng=np.random.default_rng(8), jacobian="derived", plane="x", start="long"
     )
-    s = student.scenario("x")
+    s = student.ring_scenario("x")
     assert len(long.time) == s.samples - 100
     np.testing.assert_array_equal(long.truth, s.truth[100:])
     np.testing.assert_array_equal(long.true_start, s.truth[99])

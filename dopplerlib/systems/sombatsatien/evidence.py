@@ -7,9 +7,10 @@ from ...evaluation.intervals import proportion_interval, quantile_interval
 from ...model.doppler import doppler_jacobian
 from ...replication.verdicts import Draws, Readings
 from .. import mittermaier2016
-from .post_mortem import final_bound, post_mortem
-from .published import reported_record, scenario, start_settings
+from .diagnosis import final_bound
+from .published import reported
 from .student_filter import student_jacobian
+from .variants import post_mortem, reported_record
 
 AXES = "xyz"
 
@@ -29,7 +30,7 @@ def evidence(*, rng, runs=400):
     dict
         By the id of the claim; see `judge_all`.
     """
-    paper, s = mittermaier2016.scenario(), scenario()
+    paper, s = mittermaier2016.scenario(), reported().scenario
     as_reported = post_mortem(runs, rng=rng)
     sign = post_mortem(100, rng=rng, jacobian="derived")
     repaired = post_mortem(runs, rng=rng, jacobian="derived", plane="x", start="long")
@@ -83,7 +84,7 @@ def _outcome(result):
 
 def _rerun(rng):
     """Return the report's own run, from 100 starts within the rounding of the printed one."""
-    start = start_settings().estimate + rng.uniform(-5e-5, 5e-5, (100, 6))
+    start = reported().start.estimate + rng.uniform(-5e-5, 5e-5, (100, 6))
     z = np.repeat(reported_record()[None], 100, axis=0)
     result = post_mortem(100, rng=None, z=z, start=start)
     return {

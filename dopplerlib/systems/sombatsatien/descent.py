@@ -1,12 +1,24 @@
 """The start of the report: one descent from one guess to the nearest optimum."""
 
+from typing import Literal
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Measurements, State, checked
+from ..._typing import BoolArray, FloatArray
 from ...kernels.doppler import doppler_shift_and_gradient
+from ...model.radar_array import RadarArray
 
 
-def local_start(z, array, guess, box, gradient="exact"):
+@checked
+def local_start(
+    z: Measurements,
+    array: RadarArray,
+    guess: State,
+    box: tuple[State, State],
+    gradient: Literal["exact", "differences"] = "exact",
+) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Minimize the squared misfit to the average of some samples, from one guess.
 
     Parameters
@@ -36,17 +48,28 @@ def local_start(z, array, guess, box, gradient="exact"):
     Raises
     ------
     ValueError
-        If `gradient` is unknown or an argument has the wrong shape.
+        If `gradient` is unknown, an argument has the wrong shape, or a lower bound is above the
+        upper one.
 
     Notes
     -----
     L-BFGS-B of SciPy (Byrd et al. 1995) with its defaults. The state is taken as constant during
     the samples. Whether the optimum is the best one is not asked.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray
+    >>> box = [0.1, -1, -0.5, -2, -1, -1], [2, 1, 0.5, 0, 1, 1]
+    >>> guess, z = [0.5, 0, 0.1, -0.5, 0, 0], np.full((1, 2, 6), 100.0)
+    >>> local_start(z, RadarArray.ring(6, 0.2, normal="z"), guess, box)[0].shape
+    (1, 6)
     """
     from scipy.optimize import minimize  # here: it takes longer to load than all the rest
 
-    z = _checks.finite("z", z, (None, None, len(array)))
-    exact = _checks.one_of("gradient", gradient, ("exact", "differences")) == "exact"
+    _checks.check_shape("z", z, (len(array),))
+    exact = gradient == "exact"
+    if (box[0] > box[1]).any():
+        raise ValueError(f"box must have no lower bound above the upper one, got {box}")
     bounds = list(zip(*box, strict=True))
     sensors = *array.positions.T, array.doppler_per_speed
     x, misfit = np.empty((len(z), 6)), np.empty(len(z))

@@ -1,27 +1,30 @@
 """The report's system, run as often as wanted, with each cause of failure repaired or not."""
 
 from dataclasses import replace
+from typing import Annotated, Literal
 
 import numpy as np
 
 from ... import _checks
+from ..._hints import Covariance, Measurements, Runs, State, States, checked, exactly
 from ..._records import record
+from ..._typing import FloatArray
 from ...estimation.extended_kalman import ekf
 from ...estimation.maximum_likelihood import ml_initialize
 from ...estimation.track import Track
-from ...evaluation.bounds import crlb
-from ...evaluation.consistency import nees
 from ...model.doppler import doppler_shift
+from ...model.radar_array import RadarArray
+from ...model.scenario import Scenario
 from ...model.simulation import simulate
-from ...model.twin import planar_twin
-from .local_start import local_start
-from .published import scenario, start_settings
-from .student_filter import JACOBIANS, student_ekf
+from .descent import local_start
+from .published import reported
+from .student_filter import Jacobian, student_ekf
 
-STARTS = ("as reported", "global", "long", "truth")
+Plane = Literal["z", "x"]
 LONG = 100  # samples of the "long" start: a tenth of the record
 
 
+@checked
 @record
 class PostMortem:
     """Runs of one variant of the report's system.
@@ -42,40 +45,92 @@ class PostMortem:
         Distances to the truth in m and m/s.
     """
 
-    time: np.ndarray
-    truth: np.ndarray
-    true_start: np.ndarray
-    start: np.ndarray
+    time: Annotated[FloatArray, exactly(None)]
+    truth: Annotated[FloatArray, exactly(None, 6)]
+    true_start: State
+    start: Annotated[FloatArray, exactly(None, 6)]
     track: Track
-    position_error: np.ndarray
-    velocity_error: np.ndarray
+    position_error: Annotated[FloatArray, exactly(None, None)]
+    velocity_error: Annotated[FloatArray, exactly(None, None)]
 
     @property
-    def position_rmse(self):
+    def position_rmse(self) -> FloatArray:
         """Root mean square position error of each run in m, shape (runs,)."""
         return np.sqrt(np.mean(self.position_error**2, axis=-1))
 
     @property
-    def velocity_rmse(self):
+    def velocity_rmse(self) -> FloatArray:
         """Root mean square velocity error of each run in m/s, shape (runs,)."""
         return np.sqrt(np.mean(self.velocity_error**2, axis=-1))
 
 
+@checked
+def ring_scenario(plane: Plane) -> Scenario:
+    """Return the simulation of the report with the ring in either plane.
+
+    Parameters
+    ----------
+    plane : {"z", "x"}
+        z = 0 as in the report, or x = 0 as in the paper that it replicates, with the first sensor
+        on +y.
+
+    Returns
+    -------
+    Scenario
+
+    Examples
+    --------
+    >>> ring_scenario("x").array.positions[0].round(3).tolist()
+    [0.0, 0.2, 0.0]
+    """
+    s = reported().scenario
+    if plane == "z":
+        return s
+    radius = float(np.linalg.norm(s.array.positions[0]))
+    array = RadarArray.ring(len(s.array), radius, normal="x", wavelength=s.array.wavelength)
+    return replace(s, array=array)
+
+
+def reported_record() -> FloatArray:
+    """Return the measurements of the report's one run, noise included.
+
+    Returns
+    -------
+    ndarray, shape (1000, 6)
+        Doppler measurements in Hz.
+
+    Notes
+    -----
+    The notebook fixes the seed of NumPy's legacy generator, whose numbers never change.
+    """
+    s = reported().scenario
+    noise = np.random.RandomState(reported().seed).standard_normal((s.samples, len(s.array)))
+    return doppler_shift(s.truth, s.array) + s.sigma_f * noise
+
+
+@checked
 def post_mortem(
-    runs, *, rng, jacobian="as reported", plane="z", start="as reported", P0=None, z=None
-):
+    runs: Runs,
+    *,
+    rng: np.random.Generator | None,
+    jacobian: Jacobian = "as reported",
+    plane: Plane = "z",
+    start: Literal["as reported", "global", "long", "truth"] | States = "as reported",
+    P0: Covariance | None = None,
+    z: Measurements | None = None,
+) -> PostMortem:
     """Run the report's system, or a repaired one.
 
     Parameters
     ----------
     runs : int
         Number of independent records.
-    rng : numpy.random.Generator
-        Source of the measurement noise, see `simulate`.
+    rng : numpy.random.Generator or None
+        Source of the measurement noise, see `simulate`. Not needed with `z`.
     jacobian : {"as reported", "derived"}
         See `student_jacobian`.
     plane : {"z", "x"}
-        Plane of the ring, see `scenario`.
+        Plane of the ring, see `ring_scenario`.
     start : {"as reported", "global", "long", "truth"} or array_like, shape (6,) or (runs, 6)
         "as reported": one descent, see `local_start`. "global": `ml_initialize` in the same box, on
         the same ten samples, for a target that moves. "long": the same on a hundred samples, and
@@ -83,7 +138,7 @@ def post_mortem(
     P0 : array_like, shape (6, 6), optional
         Covariance of the start; that of the report, 0.1 I, if None and the start brings none.
     z : array_like, shape (runs, 1000, 6), optional
-        Measurements of one's own in Hz; `rng` is not used then.
+        Measurements in Hz, for what would be simulated.
 
     Returns
     -------
@@ -98,18 +153,26 @@ def post_mortem(
     -----
     With the derived Jacobian the filter is `dopplerlib.ekf`, which is the same and faster; a test
     compares it with `student_ekf`.
+
+    Examples
+    --------
+    >>> result = post_mortem(1, rng=np.random.default_rng(1), start="truth")
+    >>> result.track.x.shape
+    (1, 990, 6)
     """
-    s, settings = scenario(plane), start_settings()
-    _checks.one_of("jacobian", jacobian, JACOBIANS)
+    s, settings = ring_scenario(plane), reported().start
     if z is None:
         _, z = simulate(s, runs, rng=rng)
+    elif z.shape != (runs, s.samples, len(s.array)):
+        wanted = runs, s.samples, len(s.array)
+        raise ValueError(f"z must have shape {wanted}, got {z.shape}")
     used = LONG if isinstance(start, str) and start == "long" else settings.samples
-    first, rest = np.split(np.asarray(z, float), [used], axis=1)
+    first, rest = np.split(z, [used], axis=1)
     true_start, truth = s.truth[used - 1], s.truth[used:]
     own = s.P0
     if isinstance(start, str):
-        start, own = _start(_checks.one_of("start", start, STARTS), first, s, settings, true_start)
-    start = np.broadcast_to(start, (len(rest), 6))
+        start, own = _start(start, first, s, settings, true_start)
+    start = _checks.each_run("start", start, (runs,), (6,))
     track = (student_ekf if jacobian == "as reported" else ekf)(
         rest, s.array, start, own if P0 is None else P0, s.T, s.sigma_a, s.sigma_f
     )
@@ -125,7 +188,8 @@ def post_mortem(
     )
 
 
-def repairs(runs, *, rng):
+@checked
+def repairs(runs: Runs, *, rng: np.random.Generator) -> dict[str, PostMortem]:
     """Run every combination of what is repaired and what is not, on the same noise.
 
     Parameters
@@ -141,10 +205,15 @@ def repairs(runs, *, rng):
         By what is repaired: the "sign" of the Jacobian, the "geometry" of the ring, the "start" by
         a global search. The first is "as reported"; the last is "all, longer start", see
         `post_mortem`.
+
+    Examples
+    --------
+    >>> list(repairs(1, rng=np.random.default_rng(1)))[:4]
+    ['as reported', 'start', 'geometry', 'geometry + start']
     """
-    truth, z = simulate(scenario(), runs, rng=rng)
-    noise = z - doppler_shift(truth, scenario().array)
-    z = {plane: doppler_shift(truth, scenario(plane).array) + noise for plane in "zx"}
+    truth, z = simulate(reported().scenario, runs, rng=rng)
+    noise = z - doppler_shift(truth, reported().scenario.array)
+    z = {plane: doppler_shift(truth, ring_scenario(plane).array) + noise for plane in "zx"}
     derived = {
         (plane, start): post_mortem(
             runs, rng=None, jacobian="derived", plane=plane, start=start, z=z[plane]
@@ -168,7 +237,8 @@ def repairs(runs, *, rng):
     return results
 
 
-def consistent_runs(runs, *, rng):
+@checked
+def consistent_runs(runs: Runs, *, rng: np.random.Generator) -> PostMortem:
     """Run the repaired filter from starts that err as it believes: by a centimeter, unbiased.
 
     Parameters
@@ -187,116 +257,17 @@ def consistent_runs(runs, *, rng):
     ------
     ValueError
         If `runs` is not a positive whole number, or `rng` is not a generator.
+
+    Examples
+    --------
+    >>> consistent_runs(1, rng=np.random.default_rng(1)).position_rmse.shape
+    (1,)
     """
-    runs = _checks.whole_number("runs", runs)
-    _checks.generator("rng", rng)
-    s, settings = scenario("x"), start_settings()
+    s = ring_scenario("x")
     error = 0.01 * rng.standard_normal((runs, 6))
-    start = s.truth[settings.samples - 1] + error
+    start = s.truth[reported().start.samples - 1] + error
     P0 = 0.01**2 * np.eye(6)
     return post_mortem(runs, rng=rng, jacobian="derived", plane="x", start=start, P0=P0)
-
-
-def nearer_to_twin(result):
-    """Return which runs started nearer to the twin of the true state than to the state itself.
-
-    Parameters
-    ----------
-    result : PostMortem
-        Runs with the ring in the plane x = 0; see `planar_twin`.
-
-    Returns
-    -------
-    ndarray of bool, shape (runs,)
-    """
-    _checks.instance("result", result, PostMortem)
-    distance = [
-        np.linalg.norm((result.start - x)[:, :3], axis=-1)
-        for x in (planar_twin(result.true_start), result.true_start)
-    ]
-    return distance[0] < distance[1]
-
-
-def final_bound(plane):
-    """Return the least root mean square error of the final position, given the whole record.
-
-    Parameters
-    ----------
-    plane : {"z", "x"}
-        Plane of the ring.
-
-    Returns
-    -------
-    float
-        In m: the Cramér-Rao bound for a target at constant velocity.
-    """
-    s = scenario(plane)
-    P = crlb(s.x0, s.array, s.sigma_f, s.samples, s.T, "constant_velocity")
-    F = np.eye(6)
-    F[:3, 3:] = (s.samples - 1) * s.T * np.eye(3)
-    return float(np.sqrt(np.trace((F @ P @ F.T)[:3, :3])))
-
-
-def measures(result):
-    """Return four numbers for each run: two of error, two of consistency.
-
-    Parameters
-    ----------
-    result : PostMortem
-        Runs of one variant.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (runs,)
-        By name and unit.
-    """
-    _checks.instance("result", result, PostMortem)
-    last = replace(result.track, x=result.track.x[:, -1:], P=result.track.P[:, -1:])
-    return {
-        "position RMSE (m)": result.position_rmse,
-        "final error (m)": result.position_error[:, -1],
-        "average NIS": result.track.nis.mean(axis=-1),
-        "final NEES": nees(last, result.truth[-1:])[:, 0],
-    }
-
-
-def outcomes(result):
-    """Return what the report prints of its own run, for each of these runs.
-
-    Parameters
-    ----------
-    result : PostMortem
-        Runs of the report's system.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (runs,)
-        By name and unit; `reported_outcomes` has the report's.
-    """
-    _checks.instance("result", result, PostMortem)
-    final = result.track.x[:, -1]
-    return {
-        "position RMSE (m)": result.position_rmse,
-        "velocity RMSE (m/s)": result.velocity_rmse,
-        "final position error (m)": result.position_error[:, -1],
-        "final x (m)": final[:, 0],
-        **{f"final v_{c} (m/s)": final[:, 3 + i] for i, c in enumerate("xyz")},
-    }
-
-
-def mirrored(x):
-    """Return states mirrored at the plane z = 0: a ring in that plane sees no difference.
-
-    Parameters
-    ----------
-    x : array_like, shape (..., 6)
-        States in m and m/s.
-
-    Returns
-    -------
-    ndarray, shape (..., 6)
-    """
-    return np.asarray(x) * [1, 1, -1, 1, 1, -1]
 
 
 def _start(name, z, s, settings, true_start):
