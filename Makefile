@@ -74,9 +74,10 @@ lint: $(VENV)/.ready  ## check style, formatting and types
 	$(VENV)/bin/mypy
 
 .PHONY: format
-format: $(VENV)/.ready  ## repair what can be repaired of style and formatting
+format: $(VENV)/.ready  ## repair what can be repaired of style, and write the stubs of the packages
 	$(VENV)/bin/ruff check --fix
 	$(VENV)/bin/ruff format
+	$(PY) -m tools.stubs
 
 # NAME=ekf executes book/ekf.ipynb only, some ten seconds; several names take quotes.
 .PHONY: chapter

@@ -66,7 +66,7 @@ def test_the_stubs_are_those_of_the_packages():
     found = stubs()
     assert set(LIBRARY.rglob("*.pyi")) == found.keys()
     for path, text in found.items():
-        assert path.read_text(encoding="utf-8") == text, "make them again: python -m tools.stubs"
+        assert path.read_text(encoding="utf-8") == text, "run: make format"
 
 
 def test_a_constructor_for_type_checkers_takes_the_fields():

@@ -35,7 +35,7 @@ def part_calls(dl, np):
         "evaluation": lambda: dl.chi2_interval(6),
         "replication": lambda: judged(dl, rng),
         "asheim2015": lambda: s.asheim2015.deviations([1.0, 2.0]),
-        "automotive2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
+        "macaveiu2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
         "mittermaier2016": lambda: s.mittermaier2016.published_figure6().nis,
         "mittermaier2016, scenario": lambda: s.mittermaier2016.scenario().truth,
         "sombatsatien": lambda: s.sombatsatien.reported_record(),
@@ -71,49 +71,19 @@ def judged(dl, rng):
 
 
 def figure_calls(dl, np):
-    """Return {module of the figures: function without arguments that draws one}."""
-    f, s, rng = dl.figures, dl.systems, np.random.default_rng(1)
-    time, plane, column = np.arange(5.0), np.ones((5, 2)), np.ones((5, 1))
-    line, ring = dl.RadarArray.linear(2, 0.2), dl.RadarArray.ring(6, 0.2)
-    x0, sensors = [1.0, 0, 0, -1, 0, 0], np.array([[-0.5, 0.0], [0.5, 0.0]])
-    paper, half = s.mittermaier2016, dl.evaluation.intervals.ConfidenceInterval(0.5, 0.4, 0.6)
-    world, path = paper.scenario(), paper.scenario().truth
-    two = np.ones((2, 2))
-    errors = rng.uniform(0.1, 1.0, (2, 20))
+    """Return {figure: function without arguments that draws it}: all files that figures need.
+
+    These are the style, which every figure has; the page of the demonstration; and data. What else
+    a module of the figures could lack outside of a checkout, importing it tells.
+    """
+    f, paper, rng = dl.figures, dl.systems.mittermaier2016, np.random.default_rng(1)
+    line, x0 = dl.RadarArray.linear(2, 0.2), [1.0, 0, 0, -1, 0, 0]
     return {
-        "asheim": lambda: f.asheim.one_range(time, time, time, {"a": time}, (1, 3)),
-        "asheim_beyond": lambda: f.asheim_beyond.sweep(time[:2], {"a": [half] * 2}, "s"),
-        "asheim_two": lambda: f.asheim_two.error_over_distance(time, {"a": plane.T}),
-        "asheim_real": lambda: f.asheim_real.positions(plane, plane, plane, sensors),
-        "automotive": lambda: f.automotive.scene({"all": {}}, np.zeros((6, 4))),
-        "automotive_beyond": lambda: f.automotive_beyond.hole(time, {"a": time}, 0.1, {"a": time}),
-        "automotive_filter": lambda: f.automotive_filter.lags(time[:2], two, two, {}),
-        "automotive_waveforms": lambda: f.automotive_waveforms.sketches(),
-        "consistency": lambda: f.consistency.one_run(time, {"a": time, "b": time}, (1.0, 3.0)),
+        "style": lambda: f.style.STYLE.read_text(encoding="utf-8"),
         "demonstration": lambda: f.demonstration.doppler_demonstration("", line, x0),
-        "derivation": lambda: f.derivation.one_text(["a", "b"], ["c"]),
-        "end_to_end": lambda: f.end_to_end.when(0.005, 0.03),
-        "error_map": lambda: f.error_map.shares(time[1:], {"a": {"b": errors[0, :4]}}),
         "figure6": lambda: f.figure6.errors(
             paper.figure6(1, rng=rng, keep=()), paper.published_figure6()
         ),
-        "filtering": lambda: f.filtering.bands(time, plane, plane, plane),
-        "geometry": lambda: f.geometry.two_sensors(line, x0),
-        "iq": lambda: f.iq.chain(["a", "b"], ["c", "d"], 1),
-        "iq_study": lambda: f.iq_study.outliers({"a": time, "b": time}, 2.0),
-        "noise_sweep": lambda: f.noise_sweep.sequences({"a": errors[None]}),
-        "observability": lambda: f.observability.blind_family(
-            ring, np.array(x0), np.array([x0, x0])
-        ),
-        "preface": lambda: f.preface.hero(
-            world, dl.doppler_shift(path, world.array), path[None] + 0.01, x0
-        ),
-        "scene": lambda: f.scene.project(np.eye(3), 30.0, 20.0),
-        "sombatsatien": lambda: f.sombatsatien.alarm_shares((1, 2), {"a": {"b": plane[:2] > 0}}),
-        "start": lambda: f.start.error_distributions({"a": tuple(errors)}, {}, (0.5, 0.6)),
-        "style": lambda: f.style.STYLE.read_text(encoding="utf-8"),
-        "tour": lambda: f.tour.record(time, column, column),
-        "valarmathi": lambda: f.valarmathi.correlation(time, time),
     }
 
 
