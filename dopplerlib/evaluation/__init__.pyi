@@ -1,6 +1,7 @@
 # Made by python -m tools.stubs; do not edit.
 from . import alarms as alarms
 from . import averages as averages
+from . import bootstrap as bootstrap
 from . import bounds as bounds
 from . import checklist as checklist
 from . import consistency as consistency

@@ -8,7 +8,16 @@ from .expected_error import error_area, one_scan_bound
 from .experiments import baseline_sweep, late_radar, refused_scans, usable_ranges
 from .in_the_plane import central_filter, table_3_2
 from .many_detections import false_tracks, managed_tracks, on_track, pda_radar
-from .measures import departure, distance_error, rmse, usable_range, usable_range_of_each
+from .measures import (
+    departure,
+    distance_error,
+    rmse,
+    rmse_interval,
+    rmse_ratio,
+    usable_interval,
+    usable_range,
+    usable_ratio,
+)
 from .one_radar import RadarTrack, filter_radar
 from .published import (
     Settings,
@@ -20,7 +29,6 @@ from .published import (
     settings,
     snr,
 )
-from .resampling import over_runs, rmse_interval, rmse_ratio, usable_interval, usable_ratio
 from .scene import (
     Records,
     maneuver_track,
@@ -55,7 +63,6 @@ __all__ = [
     "noisy_positions",
     "on_track",
     "one_scan_bound",
-    "over_runs",
     "pda_radar",
     "quoted",
     "radars",
@@ -75,7 +82,6 @@ __all__ = [
     "triangulate",
     "usable_interval",
     "usable_range",
-    "usable_range_of_each",
     "usable_ranges",
     "usable_ratio",
     "walk",

@@ -7,7 +7,7 @@ from ...estimation.radial_velocity import radial_velocity_terms
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...replication.verdicts import Readings
 from .expected_error import error_area, one_scan_bound
-from .in_the_plane import polar_jacobian
+from .in_the_plane import range_and_angle_jacobian
 from .published import deviations, quoted, resolutions, scenario, settings, snr
 from .scene import maneuver_track, radars, straight_track
 
@@ -140,7 +140,7 @@ def _printed_pseudo_innovation():
 def _printed_angle_innovation():
     """Return alpha - H x, the innovation of Table 3.2 for an angle exactly as predicted."""
     x, _ = _example()
-    return float(np.arctan2(x[1], x[0]) - polar_jacobian(x)[1] @ x)
+    return float(np.arctan2(x[1], x[0]) - range_and_angle_jacobian(x)[1] @ x)
 
 
 def _difference_bias():

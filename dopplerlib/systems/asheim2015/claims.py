@@ -9,10 +9,9 @@ from ...estimation.radial_velocity import radial_velocity_update
 from ...evaluation.intervals import proportion_interval
 from ...replication.verdicts import Draws, Readings
 from ._claims_formulas import settings_and_formulas
-from .measures import departure, distance_error, usable_range_of_each
+from .measures import departure, distance_error, rmse_ratio, usable_range, usable_ratio
 from .one_radar import filter_radar
 from .published import quoted, scenario, settings
-from .resampling import rmse_ratio, usable_ratio
 from .scene import simulate
 from .stand_in import WALKS, walk
 from .two_radars import triangulate
@@ -171,7 +170,7 @@ def two_radars(records, tracks, rng):
         return rmse_ratio(a[:, :K], b[:, :K], t[:K], middle, middle - low, rng=rng)
 
     return {
-        "useful-range": Draws(np.minimum(usable_range_of_each(errors["code"], t, d), d[-1])),
+        "useful-range": Draws(np.minimum(usable_range(errors["code"][:, None], t, d), d[-1])),
         "raw-range": usable_ratio(errors["measured"], errors["code"], t, d, rng=rng),
         "fusion-shortens": usable_ratio(errors["code"], single, t, d, rng=rng),
         "raw-at-four": Draws(np.abs(raw[:, at, 0] - truth[at, 0])),

@@ -3,10 +3,10 @@
 import numpy as np
 
 from ... import _checks
+from ...evaluation.bootstrap import bootstrap_interval
 from .in_the_plane import central_filter
-from .measures import distance_error
+from .measures import distance_error, rmse_interval, usable_interval
 from .published import scenario, settings
-from .resampling import over_runs, rmse_interval, usable_interval
 from .scene import simulate, straight_track
 from .two_radars import filter_then_triangulate
 
@@ -84,7 +84,7 @@ def late_radar(offsets, runs, *, rng, window=(25.0, 30.0)):
             strict=True,
         ):
             squares = np.mean(distance_error(track.p, truth)[:, then] ** 2, axis=1)
-            found[name].append(over_runs(lambda s: np.sqrt(s.mean()), squares, rng=child))
+            found[name].append(bootstrap_interval(np.sqrt, [squares], rng=child))
     return found
 
 
@@ -157,6 +157,6 @@ def refused_scans(starts, densities, runs, *, rng, duration=10.0, floor=(0.0, 0.
         for q in densities:
             own = settings("modern", q=float(q), floor=floor)
             used = central_filter(records, own, start=[0.0, y, 0.0, 0.0]).updated[:, 1]
-            row.append(over_runs(np.mean, (~used).mean(axis=1), rng=rng))
+            row.append(bootstrap_interval(np.positive, [(~used).mean(axis=1)], rng=rng))
         found.append(row)
     return found

@@ -6,11 +6,14 @@ from ... import _checks
 from ...estimation import gaussian, recursion
 from ...estimation.nonlinear_kalman import ekf_records
 from ...model.motion import cwna_process_noise, ncv_transition
+from ...model.polar_radar import polar_radar_h, polar_radar_jacobian
 from ...model.range_rate import range_rate, range_rate_jacobian
 from ...tracking.bilateration import bilaterate
 from ...tracking.gates import chi2_gate, fixed_box_gate
 from .published import scenario
 from .two_radars import PositionTrack, triangulate
+
+_AXES = [1, 3, 0, 2]  # [y, v_y, x, v_x] of [x, y, v_x, v_y]
 
 
 def central_filter(records, settings, *, q=None, start=None):
@@ -112,13 +115,13 @@ def table_3_2(records, *, Q=None, start=None):
     F = ncv_transition(records.time[1] - records.time[0], dim=2, order="derivative")
     track = ekf_records(
         measured[:, 1:], lambda x: (F @ x[..., None])[..., 0], lambda x: F, Q,
-        polar, polar_jacobian, R, x, P, wrap=(1,),
+        range_and_angle, range_and_angle_jacobian, R, x, P, wrap=(1,),
     )  # fmt: skip
     x, P = (np.insert(after, 0, begin, axis=1) for after, begin in ((track.x, x), (track.P, P)))
     return PositionTrack(x[..., :2], valid, np.stack([valid, valid], axis=1), x, P)
 
 
-def polar(x):
+def range_and_angle(x):
     """Return distance from the origin and angle of states in the plane.
 
     Parameters
@@ -129,13 +132,14 @@ def polar(x):
     Returns
     -------
     ndarray, shape (..., 2)
-        In m and rad.
+        In m and rad, zero along +x. They are those of `polar_radar_h` with the axes exchanged,
+        whose azimuth is zero along +y.
     """
-    return np.stack([np.hypot(x[..., 0], x[..., 1]), np.arctan2(x[..., 1], x[..., 0])], axis=-1)
+    return polar_radar_h(x[..., _AXES])[..., :2]
 
 
-def polar_jacobian(x):
-    """Return the derivative of `polar`, Eq 3.19.
+def range_and_angle_jacobian(x):
+    """Return the derivative of `range_and_angle`, Eq 3.19.
 
     Parameters
     ----------
@@ -146,11 +150,7 @@ def polar_jacobian(x):
     -------
     ndarray, shape (..., 2, 4)
     """
-    d = np.hypot(x[..., 0], x[..., 1])
-    H = np.zeros((*d.shape, 2, 4))
-    H[..., 0, 0], H[..., 0, 1] = x[..., 0] / d, x[..., 1] / d
-    H[..., 1, 0], H[..., 1, 1] = -x[..., 1] / d**2, x[..., 0] / d**2
-    return H
+    return polar_radar_jacobian(x[..., _AXES])[..., :2, np.argsort(_AXES)]
 
 
 def _motion(dt, q):

@@ -6,6 +6,7 @@ from ... import _checks
 from ..._records import record
 from ...signal.synthesis import iq_from_velocity, velocity_profile
 from .doppler_filter import doppler_filter
+from .filters import filter_velocity
 from .published import chosen, stated
 
 
@@ -114,8 +115,6 @@ def window_table(
     -----
     Sec 3.2 of the document: the window with the least cumulative error is the best.
     """
-    from .filters import filter_velocity  # it imports this module
-
     runs = _checks.whole_number("runs", runs)
     _checks.generator("rng", rng)
     own, said = chosen(), stated()

@@ -174,7 +174,7 @@ def test_measured_positions_fail_before_estimates_and_positions_before_ranges(re
         for e in (position_error(records), position_error(records, track), single)
     )
     assert raw < 0.9 * fused < fused < range_1
-    each = thesis.usable_range_of_each(position_error(records, track), t, d)
+    each = thesis.usable_range(position_error(records, track)[:, None], t, d)
     assert np.quantile(each, 0.025) < QUOTED["range"]["fused"] < np.quantile(each, 0.975)
 
 

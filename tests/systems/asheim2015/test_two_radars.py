@@ -9,7 +9,7 @@ from dopplerlib.evaluation.range_bounds import range_crlb
 from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 from dopplerlib.model.range_rate import range_rate, range_rate_jacobian
 from dopplerlib.systems import asheim2015 as thesis
-from dopplerlib.systems.asheim2015.in_the_plane import polar, polar_jacobian
+from dopplerlib.systems.asheim2015.in_the_plane import range_and_angle, range_and_angle_jacobian
 
 
 @pytest.fixture(scope="module")
@@ -64,16 +64,16 @@ def test_a_position_follows_both_ranges_alike():
 
 def test_h_x_in_place_of_h_leaves_the_whole_angle_as_an_innovation():
     x = np.array([2.0, 1.0, 0.1, 0.1])
-    np.testing.assert_allclose(polar_jacobian(x) @ x, [np.sqrt(5), 0.0], atol=1e-12)
-    assert polar(x)[1] == pytest.approx(np.arctan(0.5))
+    np.testing.assert_allclose(range_and_angle_jacobian(x) @ x, [np.sqrt(5), 0.0], atol=1e-12)
+    assert range_and_angle(x)[1] == pytest.approx(np.arctan(0.5))
 
 
 def test_the_jacobian_of_polar_coordinates_is_their_derivative():
     x = np.array([2.0, 1.0, 0.1, 0.1])
     for i in range(4):
         step = 1e-6 * np.eye(4)[i]
-        expected = (polar(x + step) - polar(x - step)) / 2e-6
-        np.testing.assert_allclose(polar_jacobian(x)[:, i], expected, atol=1e-9)
+        expected = (range_and_angle(x + step) - range_and_angle(x - step)) / 2e-6
+        np.testing.assert_allclose(range_and_angle_jacobian(x)[:, i], expected, atol=1e-9)
 
 
 def test_table_3_2_follows_the_track(records):
