@@ -3,10 +3,6 @@ from . import asheim as asheim
 from . import asheim_beyond as asheim_beyond
 from . import asheim_real as asheim_real
 from . import asheim_two as asheim_two
-from . import automotive as automotive
-from . import automotive_beyond as automotive_beyond
-from . import automotive_filter as automotive_filter
-from . import automotive_waveforms as automotive_waveforms
 from . import consistency as consistency
 from . import demonstration as demonstration
 from . import derivation as derivation
@@ -17,6 +13,9 @@ from . import filtering as filtering
 from . import geometry as geometry
 from . import iq as iq
 from . import iq_study as iq_study
+from . import macaveiu as macaveiu
+from . import macaveiu_beyond as macaveiu_beyond
+from . import macaveiu_filter as macaveiu_filter
 from . import noise_sweep as noise_sweep
 from . import observability as observability
 from . import preface as preface

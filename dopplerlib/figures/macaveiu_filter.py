@@ -1,34 +1,38 @@
-"""The linear filter of an automotive target: its tracks, its lag, and where its claims hold."""
+"""Figures of the chapter on the linear filter: tracks, claims over settings, lag, NIS."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from .._hints import Array, checked
+from ..evaluation.intervals import ConfidenceInterval
+from ..systems.macaveiu2013.published import Settings
 from ..systems.macaveiu2013.regions import decided
+from ..systems.macaveiu2013.tracking import Runs
 from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, plain_log_ticks, styled
 
-KMH = 3.6  # km/h for each m/s
-SETTINGS = {
-    "sigma_p": r"position noise $\sigma_p$ in m",
-    "sigma_v": r"velocity noise $\sigma_v$ in m/s",
-    "w": "velocity step $w$ of the filter in m/s",
+_KMH = 3.6  # km/h for each m/s
+_SETTINGS = {
+    "sigma_p": r"position noise $\sigma_p$ (m)",
+    "sigma_v": r"velocity noise $\sigma_v$ (m/s)",
+    "w": "velocity step $w$ of the filter (m/s)",
 }
 
 
-def three_panels(time, runs, run=0):
+@checked
+def three_panels(time: Array, runs: Runs, run: int = 0) -> Figure:
     """Draw position and both speeds as in Figs 7 to 11: measurements, truth, estimate.
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time in s.
     runs : Runs
         From `track`; one of the runs is drawn, and the range of all for the speeds.
     run : int
         Which run.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     truth, z, x = runs.path.truth, runs.z[run], runs.x[run]
     with styled(7.0, 2.7) as figure:
@@ -36,17 +40,17 @@ def three_panels(time, runs, run=0):
         for ax, part in zip(axes, ((0, 2), (1,), (3,)), strict=True):
             if len(part) == 2:
                 lines = [(one[:, 0], one[:, 2]) for one in (z, truth, x)]
-                ax.set(xlabel="x in m", ylabel="y in m", title="a")
+                ax.set(xlabel="x (m)", ylabel="y (m)", title="a")
                 ax.margins(x=0.25)
             else:
                 (i,) = part
-                lines = [(time, KMH * one[:, i]) for one in (z, truth, x)]
-                band = KMH * np.quantile(runs.x[:, 1:, i], [0.025, 0.975], axis=0)
+                lines = [(time, _KMH * one[:, i]) for one in (z, truth, x)]
+                band = _KMH * np.quantile(runs.x[:, 1:, i], [0.025, 0.975], axis=0)
                 ax.fill_between(time[1:], *band, color=OURS, alpha=0.25, lw=0)
                 name = {1: "$v_x$", 3: "$v_y$"}[i]
-                ax.set(xlabel="time in s", ylabel=f"{name} in km/h", title={1: "b", 3: "c"}[i])
-                middle = (KMH * truth[:, i].max() + KMH * truth[:, i].min()) / 2
-                half = max(5, 0.8 * KMH * np.ptp(truth[:, i]))
+                ax.set(xlabel="time (s)", ylabel=f"{name} (km/h)", title={1: "b", 3: "c"}[i])
+                middle = (_KMH * truth[:, i].max() + _KMH * truth[:, i].min()) / 2
+                half = max(5, 0.8 * _KMH * np.ptp(truth[:, i]))
                 ax.set_ylim(middle - half, middle + half)
             ax.plot(*lines[0], "x", color=BOUND, ms=2.5, mew=0.5, alpha=0.6, label="measured")
             ax.plot(*lines[2], color=OURS, lw=1.4, label="estimate")
@@ -55,15 +59,21 @@ def three_panels(time, runs, run=0):
         return figure
 
 
-def claim_map(rows, columns, shares, settings):
-    """Draw in how many runs claims hold, over two settings.
+@checked
+def claim_map(
+    rows: tuple[str, Sequence[float]],
+    columns: tuple[str, Sequence[float]],
+    shares: dict[str, Array],
+    settings: Settings,
+) -> Figure:
+    """Draw the percentage of runs in which each claim holds, over two settings.
 
     Parameters
     ----------
     rows, columns : tuple (str, sequence of float)
         Name and values of a setting, as `regions.claim_map` takes them.
-    shares : dict of str to ndarray, shape (3, rows, columns)
-        Share of the runs for each claim, and the ends of its interval.
+    shares : dict of str to array_like, shape (3, rows, columns)
+        Fraction of the runs for each claim, and the ends of its interval.
     settings : Settings
         Our choice, to be marked.
 
@@ -97,9 +107,9 @@ def claim_map(rows, columns, shares, settings):
             ax.set_yticks(range(len(heights)), [f"{one:g}" for one in heights])
             ax.set_title(title)
         for ax in axes[-1]:
-            ax.set_xlabel(SETTINGS[column])
+            ax.set_xlabel(_SETTINGS[column])
         for ax in axes[:, 0]:
-            ax.set_ylabel(SETTINGS[row])
+            ax.set_ylabel(_SETTINGS[row])
         return figure
 
 
@@ -112,23 +122,25 @@ def _surround(ax, inside):
         ax.plot([j - 1.5, j - 0.5], [i - 0.5] * 2, color=PUBLISHED, lw=2.5, clip_on=False)
 
 
-def lags(w, predicted, noise, measured):
-    """Draw what is left of an acceleration and of the noise, over the agility of the filter.
+@checked
+def lags(
+    w: Array,
+    predicted: Array,
+    noise: Array,
+    measured: dict[float, tuple[ConfidenceInterval, ConfidenceInterval]],
+) -> Figure:
+    """Draw lag and residual noise over the velocity step of the filter.
 
     Parameters
     ----------
-    w : ndarray, shape (M,)
+    w : array_like, shape (M,)
         Velocity steps of the filter in m/s.
-    predicted : ndarray, shape (M, 2)
+    predicted : array_like, shape (M, 2)
         Predicted lag of position in m and speed in m/s.
-    noise : ndarray, shape (M, 2)
+    noise : array_like, shape (M, 2)
         Predicted deviation by noise.
     measured : dict of float to tuple of two ConfidenceInterval
         For some w, the mean error of position and speed in many runs.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.2) as figure:
         for i, ax in enumerate(figure.subplots(1, 2)):
@@ -143,28 +155,29 @@ def lags(w, predicted, noise, measured):
                 list(measured), middle, yerr=ends, fmt="o", color=PUBLISHED, ms=4, capsize=3,
                 label="mean error of the runs",
             )  # fmt: skip
-            ax.set(xscale="log", yscale="log", xlabel="velocity step $w$ in m/s")
-            ax.set_ylabel(("position in m", "speed in m/s")[i])
+            ax.set(xscale="log", yscale="log", xlabel="velocity step $w$ (m/s)")
+            ax.set_ylabel(("position error (m)", "speed error (m/s)")[i])
             ax.set_ylim(0.004, None)
         ax.legend(loc="lower left", fontsize=8.5)
         return figure
 
 
-def nis_and_nees(time, averages, intervals):
+@checked
+def nis_and_nees(
+    time: Array,
+    averages: dict[str, tuple[Array, Array]],
+    intervals: tuple[tuple[float, float], tuple[float, float]],
+) -> Figure:
     """Draw the average NIS and NEES of several paths.
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time in s.
     averages : dict of str to tuple of two ndarray, shape (K,)
         For each path, averages over the runs of NIS and NEES.
     intervals : tuple of two pairs of float
-        Where the averages of a consistent filter lie.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+        Intervals of both averages for a consistent filter.
     """
     with styled(7.0, 3.2) as figure:
         axes = figure.subplots(1, 2, sharey=True)
@@ -172,7 +185,7 @@ def nis_and_nees(time, averages, intervals):
             ax.axhspan(*intervals[i], color=BOUND, alpha=0.4, lw=0, label="consistent")
             for (label, pair), (color, ls) in zip(averages.items(), VARIANTS, strict=False):
                 ax.plot(time, pair[i], color=color, ls=ls, lw=1.1, label=label)
-            ax.set(xlabel="time in s", ylabel=f"average {name}", yscale="log")
+            ax.set(xlabel="time (s)", ylabel=f"average {name}", yscale="log")
             plain_log_ticks(ax.yaxis)
         axes[0].legend(loc="upper right")
         return figure

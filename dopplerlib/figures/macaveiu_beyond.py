@@ -1,29 +1,36 @@
-"""Polar measurements, clutter, maneuvers and crossings: what other estimators make of them."""
+"""Figures of the chapter on polar measurements, clutter, maneuvers and crossings."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from .._hints import Array, Booleans, checked
+from ..evaluation.intervals import ConfidenceInterval
 from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, plain_log_ticks, styled
 
-KMH = 3.6  # km/h for each m/s
+_KMH = 3.6  # km/h for each m/s
 
 
-def side_by_side(time, truth, tracks, limits=None):
-    """Draw the path and the speed along x, as several filters see them.
+@checked
+def side_by_side(
+    time: Array,
+    truth: Array,
+    tracks: dict[str, Array],
+    limits: tuple[float, float] | None = None,
+) -> Figure:
+    """Draw the path and the speed along x as estimated by several filters.
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time in s.
-    truth : ndarray, shape (K, 4)
+    truth : array_like, shape (K, 4)
         True states.
-    tracks : dict of str to ndarray, shape (runs, K, 4)
+    tracks : dict of str to array_like, shape (runs, K, 4)
         Estimates of each filter; some runs are drawn.
     limits : tuple of float, optional
         Limits of the y axis of the path in m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
@@ -31,69 +38,71 @@ def side_by_side(time, truth, tracks, limits=None):
             for i, one in enumerate(x[:10]):
                 name = label if i == 0 else None
                 left.plot(one[:, 0], one[:, 2], color=color, lw=0.7, alpha=0.7, label=name)
-                right.plot(time, KMH * one[:, 1], color=color, lw=0.7, alpha=0.7, label=name)
+                right.plot(time, _KMH * one[:, 1], color=color, lw=0.7, alpha=0.7, label=name)
         left.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", label="truth")
-        right.plot(time, KMH * truth[:, 1], color=TRUTH, ls="--", label="truth")
-        left.set(xlabel="x in m", ylabel="y in m")
+        right.plot(time, _KMH * truth[:, 1], color=TRUTH, ls="--", label="truth")
+        left.set(xlabel="x (m)", ylabel="y (m)")
         if limits is not None:
             left.set_ylim(*limits)
-        right.set(xlabel="time in s", ylabel="$v_x$ in km/h")
+        right.set(xlabel="time (s)", ylabel="$v_x$ (km/h)")
         left.legend(loc="best")
         return figure
 
 
-def hole(time, rates, v_min, deviations):
-    """Draw the range rates that a clutter rule looks at, and what its hole does to a track.
+@checked
+def hole(
+    time: Array, rates: dict[str, Array], v_min: float, deviations: dict[str, Array]
+) -> Figure:
+    """Draw the range rates that a clutter rule tests, and the errors during the gap that it leaves.
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time in s.
-    rates : dict of str to ndarray, shape (K,)
+    rates : dict of str to array_like, shape (K,)
         Range rate of each path in m/s.
     v_min : float
         Range rate below which a detection is deleted, in m/s.
-    deviations : dict of str to ndarray, shape (K,)
+    deviations : dict of str to array_like, shape (K,)
         For each way to use the rule, the root mean square position error in m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
         left.axhspan(-v_min, v_min, color=BOUND, alpha=0.3, lw=0, label="deleted")
         for (label, rate), (color, ls) in zip(rates.items(), VARIANTS, strict=False):
             left.plot(time, rate, color=color, ls=ls, label=label)
-        left.set(xlabel="time in s", ylabel="range rate in m/s")
+        left.set(xlabel="time (s)", ylabel="range rate (m/s)")
         left.legend(loc="best")
         for (label, error), (color, ls) in zip(deviations.items(), VARIANTS, strict=False):
             right.plot(time[1:], error[1:], color=color, ls=ls, label=label)
-        right.set(xlabel="time in s", ylabel="position error in m, rms", yscale="log")
+        right.set(xlabel="time (s)", ylabel="RMS position error (m)", yscale="log")
         plain_log_ticks(right.yaxis)
         right.legend(loc="best")
         return figure
 
 
-def over_time(time, errors, shaded, ylabel, mode=None):
+@checked
+def over_time(
+    time: Array,
+    errors: dict[str, Array],
+    shaded: Booleans,
+    ylabel: str,
+    mode: Array | None = None,
+) -> Figure:
     """Draw the root mean square error of several estimators over time.
 
     Parameters
     ----------
-    time : ndarray, shape (K,)
+    time : array_like, shape (K,)
         Time in s.
-    errors : dict of str to ndarray, shape (K,)
+    errors : dict of str to array_like, shape (K,)
         Error of each estimator.
-    shaded : ndarray of bool, shape (K,)
+    shaded : array_like of bool, shape (K,)
         When the target turns.
     ylabel : str
         Name and unit of the error.
-    mode : ndarray, shape (K,), optional
+    mode : array_like, shape (K,), optional
         Probability of the agile model, drawn below.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     rows = 1 if mode is None else 2
     ratios = [1] if mode is None else [3, 1]
@@ -108,28 +117,30 @@ def over_time(time, errors, shaded, ylabel, mode=None):
         axes[0].legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize=8.5)
         if mode is not None:
             axes[1].plot(time, mode, color=OURS)
-            axes[1].set(ylabel="agile model", ylim=(0, 1))
-        axes[-1].set_xlabel("time in s")
+            axes[1].set(ylabel="probability\nof agile", ylim=(0, 1))
+        axes[-1].set_xlabel("time (s)")
         return figure
 
 
-def crossings(truth, estimates, shares, angles):
-    """Draw two who cross, and how often their tracks come out wrong.
+@checked
+def crossings(
+    truth: Array,
+    estimates: Array,
+    shares: dict[str, Sequence[ConfidenceInterval]],
+    angles: Sequence[float],
+) -> Figure:
+    """Draw two crossing targets, and the fraction of runs with swapped or merged tracks.
 
     Parameters
     ----------
-    truth : ndarray, shape (2, K, 4)
+    truth : array_like, shape (2, K, 4)
         True states.
-    estimates : ndarray, shape (2, K, 4)
+    estimates : array_like, shape (2, K, 4)
         Estimates of one run.
     shares : dict of str to list of ConfidenceInterval
-        For each label, the share of the runs at each angle.
+        For each label, the fraction of the runs at each angle.
     angles : sequence of float
         In degrees.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
@@ -137,7 +148,7 @@ def crossings(truth, estimates, shares, angles):
             left.plot(one[:, 0], one[:, 2], color=color, lw=1.3)
         for one in truth:
             left.plot(one[:, 0], one[:, 2], color=TRUTH, ls="--", lw=1)
-        left.set(xlabel="x in m", ylabel="y in m", title="one run, Hungarian")
+        left.set(xlabel="x (m)", ylabel="y (m)", title="one run, Hungarian")
         for (label, share), (color, ls) in zip(shares.items(), VARIANTS, strict=False):
             middle = np.array([one.value for one in share])
             ends = np.array([[one.value - one.low, one.high - one.value] for one in share]).T
@@ -145,7 +156,7 @@ def crossings(truth, estimates, shares, angles):
                 angles, middle, yerr=ends, color=color, ls=ls, marker="o", ms=3.5, capsize=3,
                 label=label,
             )  # fmt: skip
-        right.set(xlabel="angle between the paths in degrees", ylabel="share of the runs")
+        right.set(xlabel="angle between the paths (degrees)", ylabel="fraction of runs")
         right.set_ylim(-0.03, 1.03)
         right.legend(loc="upper right")
         return figure

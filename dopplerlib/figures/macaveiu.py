@@ -1,17 +1,16 @@
-"""What an automotive radar sends, and what comes back: the pictures of its waveforms."""
+"""Figures of the chapter on an automotive radar: waveforms, maps, the processing scheme."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, TRUTH, styled
+from .._hints import Array, checked
+from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, styled
 
 
-def sketches():
-    """Draw frequency over time of the six waveforms.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+def sketches() -> Figure:
+    """Draw frequency over time for the six waveforms, not to scale."""
     with styled(7.0, 4.4) as figure:
         axes = figure.subplots(2, 3, sharex=True, sharey=True)
         pulse, lfm, fsk, slopes, mfsk, rapid = axes.ravel()
@@ -35,43 +34,44 @@ def sketches():
         )  # fmt: skip
         for ax, title in zip(axes.ravel(), titles, strict=True):
             ax.set(title=title, xlim=(0, 1), ylim=(-0.08, 1.15), xticks=[], yticks=[])
-        figure.supxlabel("time")
-        figure.supylabel("frequency")
+        figure.supxlabel("time (not to scale)")
+        figure.supylabel("frequency (not to scale)")
         return figure
 
 
-def pulses(distance, signal, v, doppler):
+@checked
+def pulses(distance: Array, signal: Array, v: Array, doppler: dict[str, Array]) -> Figure:
     """Draw the echoes of one pulse, and the Doppler spectrum of the samples at each echo.
 
     Parameters
     ----------
-    distance : ndarray, shape (samples,)
+    distance : array_like, shape (samples,)
         Range in m.
     signal : ndarray of complex, shape (samples,)
         Echoes of one pulse.
-    v : ndarray, shape (pulses,)
+    v : array_like, shape (pulses,)
         Range rates in m/s, in rising order.
-    doppler : dict of str to ndarray, shape (pulses,)
+    doppler : dict of str to array_like, shape (pulses,)
         For each label the power in dB.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.8) as figure:
         left, right = figure.subplots(1, 2)
         left.plot(distance, np.abs(signal), color=OURS, lw=1)
-        left.set(xlabel="delay as range in m", ylabel="amplitude of one pulse")
+        left.set(xlabel="range from the delay (m)", ylabel="amplitude of one pulse")
         styles = ((OURS, "-"), (PUBLISHED, "--"), (ORANGE, "-."))
         for (label, power), (color, ls) in zip(doppler.items(), styles, strict=False):
             right.plot(v, power, color=color, ls=ls, label=label)
-        right.set(xlabel="range rate in m/s", ylabel="power in dB of the strongest", ylim=(-60, 22))
+        right.set(xlabel="range rate (m/s)", ylabel="relative power (dB)", ylim=(-60, 22))
         right.legend(loc="upper center", ncols=2)
         return figure
 
 
-def ghosts(cases, reach):
-    """Draw the lines that the tones of chirps leave in the plane of range and speed.
+@checked
+def ghosts(
+    cases: dict[str, tuple[Array, Sequence[Array], Array, Array]],
+    reach: tuple[float, float],
+) -> Figure:
+    """Draw the lines of the chirps' beat frequencies in the plane of range and range rate.
 
     Parameters
     ----------
@@ -80,10 +80,6 @@ def ghosts(cases, reach):
         and (targets, 2) true ranges in m and range rates in m/s.
     reach : tuple of float
         Limits of the range axis in m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 4.0) as figure:
         axes = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
@@ -97,39 +93,40 @@ def ghosts(cases, reach):
                     ax.plot(r, (tone - a * r) / b, color=color, ls=ls, lw=1.1, label=name)
             ax.plot(*np.transpose(targets), "o", mfc="none", mec=TRUTH, ms=11, label="target")
             ax.plot(*np.transpose(found), "x", color=PUBLISHED, mew=2, label="accepted")
-            ax.set(title=title, xlabel="range in m", xlim=reach, ylim=(-16, 16))
-        axes[0].set_ylabel("range rate in m/s")
+            ax.set(title=title, xlabel="range (m)", xlim=reach, ylim=(-16, 16))
+        axes[0].set_ylabel("range rate (m/s)")
         handles, labels = axes[-1].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3)
         return figure
 
 
-def solved(cases, targets):
+@checked
+def solved(cases: dict[str, Array], targets: dict[str, Array]) -> Figure:
     """Draw solutions of the MFSK system for many records, beside the targets.
 
     Parameters
     ----------
-    cases : dict of str to ndarray, shape (..., 2)
+    cases : dict of str to array_like, shape (..., 2)
         Ranges in m and range rates in m/s for each title.
-    targets : dict of str to ndarray, shape (targets, 2)
+    targets : dict of str to array_like, shape (targets, 2)
         The true ones.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.0) as figure:
         axes = figure.subplots(1, len(cases), squeeze=False)[0]
         for ax, (title, found) in zip(axes, cases.items(), strict=True):
             ax.plot(*found.reshape(-1, 2).T, ".", color=OURS, ms=3, alpha=0.6, label="solved")
             ax.plot(*targets[title].T, "o", mfc="none", mec=TRUTH, ms=11, label="target")
-            ax.set(title=title, xlabel="range in m")
-        axes[0].set_ylabel("range rate in m/s")
+            ax.set(title=title, xlabel="range (m)")
+        axes[0].set_ylabel("range rate (m/s)")
         axes[0].legend(loc="upper left")
         return figure
 
 
-def maps(cases, floor=-45.0):
+@checked
+def maps(
+    cases: dict[str, tuple[Array, Array, Array, dict[str, tuple[float, float]]]],
+    floor: float = -45.0,
+) -> Figure:
     """Draw range-Doppler maps.
 
     Parameters
@@ -138,10 +135,6 @@ def maps(cases, floor=-45.0):
         For each title what `range_doppler_map` returns, and {text: (r, v)} to be written into it.
     floor : float
         Lowest power of the colors in dB.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.6) as figure:
         axes = figure.subplots(1, len(cases), squeeze=False)[0]
@@ -158,7 +151,69 @@ def maps(cases, floor=-45.0):
                     arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.8},
                 )  # fmt: skip
             ax.grid(False)
-            ax.set(title=title, xlabel="range in m")
-        axes[0].set_ylabel("range rate in m/s")
-        figure.colorbar(image, ax=axes, label="dB")
+            ax.set(title=title, xlabel="range (m)")
+        axes[0].set_ylabel("range rate (m/s)")
+        figure.colorbar(image, ax=axes, label="relative power (dB)")
+        return figure
+
+
+@checked
+def scheme(blocks: Sequence[tuple[str, str]]) -> Figure:
+    """Draw a processing scheme as boxes in a row, with the output of each.
+
+    Parameters
+    ----------
+    blocks : sequence of tuple (name, output)
+        From the first to the last; an empty name gives the input.
+    """
+    with styled(7.0, 2.6) as figure:
+        ax = figure.subplots()
+        columns = 3
+        for i, (name, out) in enumerate(blocks):
+            row, column = divmod(i, columns)
+            way = 1 if row % 2 == 0 else -1  # every other row runs back
+            x, y = 1.1 * (column if way > 0 else columns - 1 - column), -row
+            ax.text(
+                x, y, name, ha="center", va="center", fontsize=9.5,
+                bbox={"boxstyle": "round,pad=0.5", "fc": "#E8F1F8", "ec": OURS},
+            )  # fmt: skip
+            ax.text(x, y - 0.33, out, ha="center", va="center", fontsize=8.5, color="#555555")
+            if i + 1 < len(blocks):
+                ends = ((x + 0.42 * way, y), (x + 0.68 * way, y))
+                if column == columns - 1:
+                    ends = ((x, y - 0.43), (x, y - 0.75))
+                ax.annotate("", ends[1], ends[0], arrowprops={"arrowstyle": "->", "color": BOUND})
+        ax.set(xlim=(-0.55, 2.75), ylim=(-1.45, 0.3))
+        ax.axis("off")
+        return figure
+
+
+@checked
+def scene(stages: dict[str, dict[str, Array]], truth: Array) -> Figure:
+    """Draw detections and tracks from above, one panel for each stage.
+
+    Parameters
+    ----------
+    stages : dict of str to dict of str to array_like, shape (..., 2)
+        For each title and each label, positions [x, y] in m. Labels that begin with "track" are
+        drawn as lines, and named once.
+    truth : array_like, shape (K, 4)
+        True states of the target.
+    """
+    dots = {"target": OURS, "stands still": BOUND, "false alarm": ORANGE, "object": SENSOR}
+    with styled(7.0, 3.8) as figure:
+        axes = figure.subplots(1, len(stages), sharex=True, sharey=True, squeeze=False)[0]
+        for ax, (title, groups) in zip(axes, stages.items(), strict=True):
+            named = False
+            for label, xy in groups.items():
+                if label.startswith("track"):
+                    ax.plot(*xy.T, color=PUBLISHED, lw=1.6, label=None if named else "track")
+                    named = True
+                else:
+                    ax.plot(*xy.T, ".", ms=2, color=dots[label], alpha=0.5, label=label)
+            ax.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", lw=1, label="truth")
+            ax.plot(0, 0, "^", color=TRUTH, ms=7)
+            ax.set(title=title, xlabel="x (m)")
+            ax.legend(loc="upper left", fontsize=8, markerscale=3, framealpha=0.9, frameon=True)
+        axes[0].set(ylabel="y (m)", ylim=(-2, 85))
         return figure
