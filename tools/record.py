@@ -17,6 +17,7 @@ from pathlib import Path
 
 from dopplerlib._files import write_text
 from dopplerlib.replication.claims import VERDICTS
+from dopplerlib.replication.documents import documents
 from tools import seeds as judged
 from tools.command import parser, start
 from tools.notebooks import ROOT, chapters, differences, executed, writable
@@ -118,7 +119,7 @@ def chapters_repeat():
 
 def seeds_tried():
     """Judge all claims with other seeds; return the section, or None if a verdict differs."""
-    found = judged.verdicts_by_seed(judged.documents(), SEEDS_TRIED)
+    found = judged.verdicts_by_seed(documents(), SEEDS_TRIED)
     different = judged.differences(found, {name: judged.on_record(name) for name in found})
     print(*different, sep="\n", file=sys.stderr)
     rows = [

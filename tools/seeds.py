@@ -8,42 +8,33 @@ verdict is not the one on record. Progress goes to standard error. The exit code
 import sys
 from collections import Counter
 from importlib import import_module
-from pathlib import Path
+from importlib.util import find_spec
 
 import numpy as np
 
-from dopplerlib.replication.claims import VERDICTS, read_claims
+from dopplerlib.replication.claims import VERDICTS
+from dopplerlib.replication.documents import documents, read_document
 from dopplerlib.replication.verdicts import judge_all
 from tools.command import parser, start
 
-ROOT = Path(__file__).resolve().parents[1]
-_NAMES = "evidence.py", "evidence", "claims.py"
 
-
-def documents(root=ROOT):
-    """Return the names of the documents that have claims and evidence for them."""
-    return [
-        path.parent.name
-        for path in sorted((root / "data").glob("*/claims.toml"))
-        if any(
-            (root / "dopplerlib" / "systems" / path.parent.name / name).exists() for name in _NAMES
-        )
-    ]
+def evidence_of(document, seed):
+    """Return the evidence for every claim, by its id, with one draw of all noise."""
+    room = f"dopplerlib.systems.{document}"
+    door = "evidence" if find_spec(f"{room}.evidence") else "claims"
+    return import_module(f"{room}.{door}").evidence(rng=np.random.default_rng(seed))
 
 
 def verdicts(document, seed):
-    """Return the verdict on every claim, by its id, with one draw of all noise."""
-    claims = read_claims(ROOT / "data" / document / "claims.toml")
-    room = import_module(f"dopplerlib.systems.{document}")
-    module = room.evidence if "evidence" in dir(room) else room.claims
-    evidence = module.evidence(rng=np.random.default_rng(seed))
-    return {one.claim.id: one.verdict for one in judge_all(claims, evidence)}
+    """Return the verdict on every claim, by its id."""
+    judgments = judge_all(read_document(document).claims, evidence_of(document, seed))
+    return {one.claim.id: one.verdict for one in judgments if not one.claim.surrogate}
 
 
 def on_record(document):
-    """Return the verdicts that the file of claims tells."""
-    claims = read_claims(ROOT / "data" / document / "claims.toml")
-    return {claim.id: claim.verdict for claim in claims}
+    """Return the verdicts that the file of claims states; those on a surrogate do not count."""
+    claims = read_document(document).claims
+    return {claim.id: claim.verdict for claim in claims if not claim.surrogate}
 
 
 def verdicts_by_seed(names, seeds):

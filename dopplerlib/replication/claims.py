@@ -41,6 +41,9 @@ class Claim:
         How the quantity lies to the limit.
     note : str
         What contradicts it, or what is missing.
+    surrogate : str
+        Simulation that stands in for data which are not published, such as "a simulated walk". The
+        verdict is then one on the simulation, and is counted apart. "" if there is none.
     """
 
     id: str
@@ -56,6 +59,7 @@ class Claim:
     rounding: float = 0.0
     relation: str | None = None
     note: str = ""
+    surrogate: str = ""
 
 
 def read_claims(path: FileSource) -> tuple[Claim, ...]:
@@ -92,7 +96,7 @@ def check_claim(where: str, claim: Claim) -> None:
     _checks.instance("claim", claim, Claim)
     for name in ("id", "where", "statement", "page", "cell", "test"):
         _checks.text(f"{name} of {where}", getattr(claim, name), least=1)
-    for name in ("unit", "note"):
+    for name in ("unit", "note", "surrogate"):
         _checks.text(f"{name} of {where}", getattr(claim, name))
     for name, choices in (("kind", KINDS), ("verdict", VERDICTS)):
         _checks.one_of(f"{name} of {where}", getattr(claim, name), choices)

@@ -3,8 +3,9 @@
 from .. import _checks, _toml
 from .._records import record
 from .._typing import FileSource
+from ._cells import badge, link, table
 
-KINDS = ("gap", "contradiction", "misprint")
+KINDS = ("gap", "contradiction", "misprint", "departure")
 
 
 @record
@@ -17,9 +18,10 @@ class Deviation:
         Its name, unique in the document.
     where : str
         Section, equation, figure or table.
-    kind : {"gap", "contradiction", "misprint"}
-        Something is not told; two places do not agree; or one place cannot be meant as it stands.
-    paper : str
+    kind : {"gap", "contradiction", "misprint", "departure"}
+        Something is not stated; two statements do not agree; one cannot be meant as it stands; or
+        it is clear, and something else is done here or beside it.
+    document : str
         What the document says, in our words.
     choice : str
         What is done here.
@@ -32,7 +34,7 @@ class Deviation:
     id: str
     where: str
     kind: str
-    paper: str
+    document: str
     choice: str
     page: str
     cell: str
@@ -56,7 +58,7 @@ class Deviations:
     Examples
     --------
     >>> Deviations([Deviation("box", "Sec 3", "gap", "no box", "two meters", "start", "boxes")])
-    1 deviations: 1 gap, 0 contradictions, 0 misprints
+    1 deviations: 1 gap
     """
 
     entries: tuple
@@ -70,12 +72,12 @@ class Deviations:
 
     def __repr__(self):
         counts = [(kind, sum(one.kind == kind for one in self.entries)) for kind in KINDS]
-        total = ", ".join(f"{count} {kind}{'s' * (count != 1)}" for kind, count in counts)
+        found = [f"{count} {kind}{'s' * (count != 1)}" for kind, count in counts if count]
+        total = ", ".join(found) or "none"
         return f"{len(self.entries)} deviations: {total}"
 
     def _repr_markdown_(self):
-        head = ["| in the document | here |", "|---|---|"]
-        return "\n".join(head + [_row(one) for one in self.entries])
+        return table(("in the document", "here"), map(_row, self.entries))
 
 
 def read_deviations(path: FileSource) -> Deviations:
@@ -109,7 +111,7 @@ def read_deviations(path: FileSource) -> Deviations:
 
 
 def _check(where, made):
-    for name in ("id", "where", "paper", "choice", "page", "cell"):
+    for name in ("id", "where", "document", "choice", "page", "cell"):
         _checks.text(f"{name} of {where}", getattr(made, name), least=1)
     _checks.one_of(f"kind of {where}", made.kind, KINDS)
     _checks.instance(f"claims of {where}", made.claims, tuple)
@@ -118,8 +120,5 @@ def _check(where, made):
 
 
 def _row(one):
-    badge = f'<span class="verdict deviation-{one.kind}">{one.kind}</span>'
-    paper = f"{badge} {one.where}.<br>{one.paper}"
-    link = f'<a href="{one.page}.html#cell-{one.cell}">{one.page.replace("_", " ")}</a>'
-    cells = paper, f"{one.choice}<br>{link}"
-    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+    said = f"{badge('deviation', one.kind)} {one.where}.<br>{one.document}"
+    return said, f"{one.choice}<br>{link(one)}"

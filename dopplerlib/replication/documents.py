@@ -1,9 +1,49 @@
-"""The documents that are replicated, by their names, and their files."""
+"""The documents that are replicated, by their names: claims and deviations of each."""
 
 from importlib.resources.abc import Traversable
 
 from .. import _checks
 from .._data import data
+from .._records import record
+from .claims import Claim, read_claims
+from .deviations import Deviations, read_deviations
+
+
+@record
+class Document:
+    """What is on record about a document.
+
+    Attributes
+    ----------
+    name : str
+        Its name, that of its folder in ``data/``.
+    claims : tuple of Claim
+        What it claims.
+    deviations : Deviations
+        Where it leaves something open or contradicts itself.
+
+    Raises
+    ------
+    ValueError
+        If a field is of another type.
+
+    Examples
+    --------
+    >>> from dopplerlib.replication.deviations import Deviation
+    >>> gap = Deviation("box", "Sec 3", "gap", "no box", "two meters", "start", "boxes")
+    >>> len(Document("ours", (), Deviations([gap])).deviations.entries)
+    1
+    """
+
+    name: str
+    claims: tuple
+    deviations: Deviations
+
+    def __post_init__(self):
+        """Check the fields."""
+        _checks.text("name", self.name, least=1)
+        object.__setattr__(self, "claims", _checks.records("claims", self.claims, Claim))
+        _checks.instance("deviations", self.deviations, Deviations)
 
 
 def documents() -> tuple[str, ...]:
@@ -50,3 +90,35 @@ def data_file(document: str, name: str) -> Traversable:
     folder = data(_checks.one_of("document", document, documents()))
     names = tuple(sorted(one.name for one in folder.iterdir()))
     return folder.joinpath(_checks.one_of("name", name, names))
+
+
+def read_document(name: str) -> Document:
+    """Read what is on record about a document.
+
+    Parameters
+    ----------
+    name : str
+        One of `documents`.
+
+    Returns
+    -------
+    Document
+
+    Raises
+    ------
+    ValueError
+        If there is no such document, or one of its files is not as `read_claims` and
+        `read_deviations` want it.
+
+    Examples
+    --------
+    >>> paper = read_document("mittermaier2016")
+    >>> paper.claims[0].id
+    'sensitivity'
+    """
+    _checks.one_of("name", name, documents())
+    return Document(
+        name,
+        read_claims(data_file(name, "claims.toml")),
+        read_deviations(data_file(name, "deviations.toml")),
+    )

@@ -1,26 +1,35 @@
 """Medians or means with their intervals, as a table for a page."""
 
+from typing import Literal
+
 import numpy as np
 
 from .. import _checks
-from .._records import record
+from .._typing import ArrayLike
 from ..evaluation.intervals import mean_interval, proportion_interval, quantile_interval
+from ..evaluation.table import Table
 
 _INTERVALS = {"median": quantile_interval, "mean": mean_interval}
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-@record
-class IntervalTable:
-    """Medians, or means, over runs that a notebook shows as a table.
+def interval_table(
+    rows: dict[str, dict[str, ArrayLike]], statistic: Literal["median", "mean"] = "median"
+) -> Table:
+    """Return a table of medians, or means, over runs, with two digits and 95 % intervals.
 
-    Attributes
+    Parameters
     ----------
-    rows : dict of str to dict of str to ndarray, shape (runs,)
-        For each variant, by its name, the same quantities by theirs. Of booleans the table shows
-        the share that is true.
+    rows : dict of str to dict of str to array_like, shape (runs,)
+        For each variant, by its name, the same quantities by theirs. Of booleans the table has the
+        fraction that is true.
     statistic : {"median", "mean"}
         Means are for counts, of which a median says little.
+
+    Returns
+    -------
+    Table
+        A row for each variant, a column for each quantity.
 
     Raises
     ------
@@ -29,38 +38,25 @@ class IntervalTable:
 
     Examples
     --------
-    >>> IntervalTable({"ours": {"error": np.arange(9.0)}}, "mean")
-    means of 1 variants
+    >>> interval_table({"ours": {"error (m)": np.arange(9.0)}}, "mean")
+    mean, 95 %         error (m)
+    ours        4.0 (1.9 to 6.1)
     """
+    interval = _INTERVALS[_checks.one_of("statistic", statistic, tuple(_INTERVALS))]
+    rows = _checks.instance("rows", rows, dict)
+    names = [list(_checks.instance("rows", one, dict)) for one in rows.values()]
+    if not names or not names[0]:
+        raise ValueError(f"rows must hold a quantity of a variant, got {rows!r}")
+    for other in names:
+        if set(other) != set(names[0]):
+            raise ValueError(f"rows must hold the same quantities, got {names[0]} and {other}")
 
-    rows: dict
-    statistic: str = "median"
+    def cell(values):
+        one = (proportion_interval if np.asarray(values).dtype == bool else interval)(values)
+        return f"{_short(one.value)} ({_short(one.low)} to {_short(one.high)})"
 
-    def __post_init__(self):
-        """Check the fields."""
-        _checks.one_of("statistic", self.statistic, tuple(_INTERVALS))
-        rows = _checks.instance("rows", self.rows, dict)
-        names = [list(_checks.instance("rows", one, dict)) for one in rows.values()]
-        if not names or not names[0]:
-            raise ValueError(f"rows must hold a quantity of a variant, got {rows!r}")
-        for other in names:
-            if set(other) != set(names[0]):
-                raise ValueError(f"rows must hold the same quantities, got {names[0]} and {other}")
-
-    def __repr__(self):
-        return f"{self.statistic}s of {len(self.rows)} variants"
-
-    def _repr_markdown_(self):
-        names = list(next(iter(self.rows.values())))
-        lines = [["", *names], ["---"] * (len(names) + 1)]
-        for label, quantities in self.rows.items():
-            lines.append([label, *(self._cell(quantities[name]) for name in names)])
-        return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-    def _cell(self, values):
-        interval = _INTERVALS[self.statistic]
-        estimate = (proportion_interval if np.asarray(values).dtype == bool else interval)(values)
-        return f"{_short(estimate.value)}<br>({_short(estimate.low)} to {_short(estimate.high)})"
+    cells = {label: [cell(one[name]) for name in names[0]] for label, one in rows.items()}
+    return Table(cells, names[0], corner=f"{statistic}, 95 %")
 
 
 def _short(value):

@@ -7,7 +7,8 @@ import numpy as np
 from .. import _checks
 from .._records import record
 from ..evaluation.intervals import ConfidenceInterval
-from .claims import VERDICTS
+from ._cells import badge, link, table
+from .claims import VERDICTS, Claim
 from .verdicts import Judgment
 
 
@@ -23,7 +24,7 @@ class Scorecard:
     Raises
     ------
     ValueError
-        If one is no `Judgment`.
+        If one is no `Judgment` of a `Claim`.
 
     Examples
     --------
@@ -40,35 +41,53 @@ class Scorecard:
     def __post_init__(self):
         """Check the fields."""
         judgments = _checks.records("judgments", self.judgments, Judgment)
+        _checks.records("claims of judgments", [one.claim for one in judgments], Claim)
         object.__setattr__(self, "judgments", judgments)
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of claims by verdict, in the order of the verdicts."""
-        counts = Counter(one.verdict for one in self.judgments)
-        return {verdict: counts[verdict] for verdict in VERDICTS if counts[verdict]}
+        """Number of claims by verdict, in the order of the verdicts; without surrogates."""
+        return _counts(self._groups().get("", []))
 
     def __repr__(self):
-        total = ", ".join(f"{count} {verdict}" for verdict, count in self.counts.items())
-        return f"{len(self.judgments)} claims: {total}"
+        lines = []
+        for surrogate, judgments in self._groups().items():
+            total = ", ".join(f"{count} {verdict}" for verdict, count in _counts(judgments).items())
+            on = f" on {surrogate}" if surrogate else ""
+            lines.append(f"{len(judgments)} claims{on}: {total}")
+        return "\n".join(lines) or "0 claims"
 
     def _repr_markdown_(self):
-        head = ["| claim | published | ours |", "|---|---|---|"]
-        return "\n".join(head + [_row(one) for one in self.judgments])
+        parts = []
+        for surrogate, judgments in self._groups().items():
+            if surrogate:
+                parts.append(f"On {surrogate}; these verdicts do not count above:")
+            parts.append(table(("claim", "published", "ours"), map(_row, judgments)))
+        return "\n\n".join(parts)
+
+    def _groups(self):
+        """Return the judgments by surrogate; those on the document itself come first."""
+        groups = {}
+        for one in sorted(self.judgments, key=lambda one: one.claim.surrogate != ""):
+            groups.setdefault(one.claim.surrogate, []).append(one)
+        return groups
+
+
+def _counts(judgments):
+    counts = Counter(one.verdict for one in judgments)
+    return {verdict: counts[verdict] for verdict in VERDICTS if counts[verdict]}
 
 
 def _row(judgment):
     claim = judgment.claim
-    badge = f'<span class="verdict verdict-{judgment.verdict}">{judgment.verdict}</span>'
     # The first sentence is what is claimed; others tell how it was made measurable.
     first, stop, rest = claim.statement.partition(". ")
-    told = [f"{badge} {claim.where}", f"**{first}{stop.strip()}** {rest}".strip()]
+    said = [f"{badge('verdict', judgment.verdict)} {claim.where}"]
+    said.append(f"**{first}{stop.strip()}** {rest}".strip())
     if claim.note:
-        told.append(claim.note)
-    told.append(
-        f'<a href="{claim.page}.html#cell-{claim.cell}">{claim.page.replace("_", " ")}</a> · '
-        f'<span class="test">{claim.test.split("::")[-1].replace("_", " ")}</span>'
-    )
+        said.append(claim.note)
+    test = claim.test.split("::")[-1].replace("_", " ")
+    said.append(f'{link(claim)} · <span class="test">{test}</span>')
     relation = f"{claim.relation} " if claim.relation else ""
     published = f"{relation}{_number(judgment.published)} {claim.unit}".strip()
     ours = [f"{_number(judgment.ours)} {claim.unit}".strip()]
@@ -76,8 +95,7 @@ def _row(judgment):
         ours.append(f"published at the percentile {judgment.percentile}")
     if judgment.reading is not None:
         ours.append(f"nearest reading: {judgment.reading}")
-    cells = "<br>".join(told), published, "<br>".join(ours)
-    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+    return "<br>".join(said), published, "<br>".join(ours)
 
 
 def _number(value):

@@ -115,7 +115,7 @@ def test_claims(broken):
 def test_deviations(broken):
     deviations = read(read_deviations, {"deviations.toml": broken}, "deviations.toml")
     for entry in deviations.entries if deviations else ():
-        texts = (entry.id, entry.where, entry.paper, entry.choice, entry.page, entry.cell)
+        texts = (entry.id, entry.where, entry.document, entry.choice, entry.page, entry.cell)
         assert all(isinstance(text, str) for text in (*texts, *entry.claims))
 
 

@@ -9,7 +9,7 @@ TABLE = """
 id = "box"
 where = "Section 3"
 kind = "gap"
-paper = "The box $|x|$ is not told."
+document = "The box $|x|$ is not told."
 choice = "Two meters."
 page = "start"
 cell = "boxes"
@@ -25,7 +25,7 @@ def read(tmp_path, text):
 
 def test_a_row_shows_both_sides_and_the_way_to_the_cell(tmp_path):
     deviations = read(tmp_path, TABLE)
-    assert repr(deviations) == "1 deviations: 1 gap, 0 contradictions, 0 misprints"
+    assert repr(deviations) == "1 deviations: 1 gap"
     assert deviations.entries[0].claims == ("start-reliable",)
     row = deviations._repr_markdown_().splitlines()[2]
     assert 'deviation-gap">gap<' in row

@@ -1,13 +1,71 @@
-"""Documents are found by their names, and what is none is refused."""
+"""What every document has to have, and what its claims and deviations have to pass.
+
+A new document is tested as soon as its folder in ``data/`` holds claims.
+"""
+
+import json
+import re
 
 import pytest
 
-from dopplerlib.replication.documents import data_file, documents
+from dopplerlib.replication.documents import data_file, documents, read_document
+from tests.replication.review import (
+    ROOT,
+    check_cells,
+    check_flips,
+    check_tests,
+    check_verdicts,
+)
+from tools.seeds import evidence_of
+
+SEED = 7  # not that of a page
 
 
-def test_every_folder_with_claims_is_a_document():
-    assert len(documents()) >= 5
-    assert all(data_file(name, "claims.toml").is_file() for name in documents())
+@pytest.fixture(scope="module", params=documents())
+def document(request):
+    return read_document(request.param)
+
+
+@pytest.fixture(scope="module")
+def evidence(document):
+    return evidence_of(document.name, SEED)
+
+
+def test_every_folder_of_the_library_is_a_document_and_every_document_has_one():
+    folders = (ROOT / "dopplerlib" / "systems").glob("*/__init__.py")
+    assert sorted(path.parent.name for path in folders) == list(documents())
+
+
+def test_a_document_has_a_page_for_its_verdicts(document):
+    page = f"scorecard_{document.name}"
+    assert (ROOT / "book" / f"{page}.ipynb").is_file()
+    assert f"- file: {page}\n" in (ROOT / "book" / "_toc.yml").read_text(encoding="utf-8")
+
+
+def test_claims_name_cells_and_tests_that_are_there(document):
+    check_cells(document.claims)
+    check_tests(document.claims)
+
+
+def test_deviations_name_cells_and_claims_that_are_there(document):
+    check_cells(document.deviations.entries)
+    ids = {claim.id for claim in document.claims}
+    for one in document.deviations.entries:
+        assert set(one.claims) <= ids, one.id
+
+
+def test_every_underdetermined_claim_is_a_gap_that_is_listed(document):
+    listed = {id for one in document.deviations.entries for id in one.claims}
+    open_ones = {one.id for one in document.claims if one.verdict == "underdetermined"}
+    assert open_ones <= listed
+
+
+def test_verdicts(document, evidence):
+    check_verdicts(document.claims, evidence)
+
+
+def test_a_verdict_flips_when_the_number_is_wrong(document, evidence):
+    check_flips(document.claims, evidence)
 
 
 def test_what_is_no_document_or_no_file_is_refused():
@@ -15,3 +73,22 @@ def test_what_is_no_document_or_no_file_is_refused():
         data_file("asheim", "claims.toml")
     with pytest.raises(ValueError, match=r"name must be one of 'README.md', .*, got '../claims.t"):
         data_file("valarmathi", "../claims.toml")
+
+
+def code_of(page):
+    """Return the sources of the cells of a chapter that hold code, by their ids."""
+    book = json.loads((ROOT / "book" / f"{page}.ipynb").read_text(encoding="utf-8"))
+    return {c["id"]: "".join(c["source"]) for c in book["cells"] if c["cell_type"] == "code"}
+
+
+def test_scorecards_have_the_same_cells_but_for_name_and_seed():
+    """One document has a study of its own, whose cells its evidence takes."""
+    pages = []
+    for name in documents():
+        cells = code_of(f"scorecard_{name}")
+        text = cells["judge"].replace(name, "NAME").replace(", cells=saved_study().cells()", "")
+        text = re.sub(r"from \S+ import saved_study\n", "", text)
+        text = text.replace(".claims import evidence", ".evidence import evidence")
+        pages.append(cells | {"judge": re.sub(r"default_rng\(\d+\)", "default_rng(SEED)", text)})
+    assert pages == pages[:1] * len(pages)
+    assert list(pages[0]) == ["judge", "scorecard", "deviations"]

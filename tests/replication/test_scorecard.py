@@ -52,3 +52,14 @@ def test_the_first_sentence_is_what_is_claimed():
 def test_a_bar_in_a_formula_does_not_end_the_column():
     row = CARD._repr_markdown_().splitlines()[3]
     assert r"$\|x\|$" in row
+
+
+def test_verdicts_on_a_surrogate_stand_in_a_table_of_their_own_and_do_not_count():
+    claim = replace(CLAIMS["limit"], id="walk", surrogate="a simulated walk")
+    card = Scorecard((judge(claim, 0.5), *CARD.judgments))
+    assert card.counts == CARD.counts
+    assert repr(card).splitlines() == [repr(CARD), "1 claims on a simulated walk: 1 contradicted"]
+    above, text, below = card._repr_markdown_().split("\n\n")
+    assert above == CARD._repr_markdown_()
+    assert text == "On a simulated walk; these verdicts do not count above:"
+    assert 'verdict-contradicted">contradicted<' in below

@@ -6,7 +6,8 @@ import re
 import pytest
 import yaml
 
-from tools import record, seeds
+from dopplerlib.replication.documents import documents
+from tools import record
 from tools.notebooks import ROOT
 
 PAGE = record.PAGE.read_text(encoding="utf8")
@@ -21,7 +22,7 @@ def test_the_hashes_on_the_page_are_those_of_the_stored_results_and_data():
 def test_every_document_has_its_verdicts():
     measured = record.recorded(PAGE)
     judged = re.findall(r"^\| (\w+) \| 1 \|", measured[record.SEEDS], flags=re.MULTILINE)
-    assert judged == seeds.documents()
+    assert judged == list(documents())
 
 
 def test_a_changed_result_changes_its_hash_and_a_changed_text_does_not(tmp_path):

@@ -43,12 +43,3 @@ def test_the_exit_code_tells_whether_verdicts_differ(monkeypatch, capsys):
     out = capsys.readouterr()
     assert "seed 3: a is atypical" in out.out
     assert "3 of 3: claims of paper, seed 3" in out.err
-
-
-def test_every_document_with_evidence_is_found(tmp_path):
-    for name in ("one", "two"):
-        (tmp_path / "data" / name).mkdir(parents=True)
-        (tmp_path / "data" / name / "claims.toml").touch()
-    (tmp_path / "dopplerlib" / "systems" / "two").mkdir(parents=True)
-    (tmp_path / "dopplerlib" / "systems" / "two" / "claims.py").touch()
-    assert seeds.documents(tmp_path) == ["two"]

@@ -60,12 +60,12 @@ def filtered_afresh(dl, np):
 
 
 def judged(dl, rng):
-    """Read all claims; return for those on the stand-in whether the verdict is that on record."""
-    read, systems = dl.replication.claims.read_claims, dl.systems
-    for name in dir(systems):
-        read(getattr(systems, name).published.data_file("claims.toml"))
-    found = systems.asheim2015.claims.stand_in_evidence(rng=rng, runs=40)
-    told = read(systems.asheim2015.published.data_file("stand_in_claims.toml"))
+    """Read all claims; return for those on a surrogate whether the verdict is that on record."""
+    read = dl.replication.documents.read_document
+    for name in dl.replication.documents.documents():
+        read(name)
+    found = dl.systems.asheim2015.claims.stand_in_evidence(rng=rng, runs=40)
+    told = [claim for claim in read("asheim2015").claims if claim.surrogate]
     judgments = dl.replication.verdicts.judge_all(told, found)
     return [judgment.verdict == judgment.claim.verdict for judgment in judgments]
 

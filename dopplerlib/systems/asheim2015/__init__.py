@@ -21,7 +21,6 @@ from .measures import (
 from .one_radar import RadarTrack, filter_radar
 from .published import (
     Settings,
-    audit,
     deviations,
     quoted,
     resolutions,
@@ -47,7 +46,6 @@ __all__ = [
     "Records",
     "Settings",
     "Walk",
-    "audit",
     "baseline_sweep",
     "central_filter",
     "departure",

@@ -35,13 +35,14 @@ def evidence(*, rng, runs=400):
         Evidence by the id of the claim.
     """
     _checks.generator("rng", rng)
-    simulated, resampled = rng.spawn(2)
+    simulated, resampled, walking = rng.spawn(3)
     records = simulate(runs, rng=simulated, duration=LONG)
     tracks = filtered(records)
     return {
         **settings_and_formulas(),
         **one_radar(records, tracks, resampled),
         **two_radars(records, tracks, resampled),
+        **stand_in_evidence(rng=walking, runs=2 * runs),
     }
 
 

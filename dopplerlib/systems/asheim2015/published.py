@@ -78,18 +78,6 @@ def quoted():
     return read_toml("asheim2015", "quoted.toml")
 
 
-def audit():
-    """Return what contradicts or is missing in the thesis, and what we do about it.
-
-    Returns
-    -------
-    list of dict of str to str
-        The tables of ``data/asheim2015/audit.toml``: where it stands (`place`), what is `told` and
-        what `found`, our `choice`, and the label of the chapter that treats it (`page`).
-    """
-    return read_toml("asheim2015", "audit.toml")["slip"]
-
-
 def resolutions():
     """Return the resolutions in range and in velocity, Eqs 5.3 and 5.5 with correct exponents.
 

@@ -1,75 +1,26 @@
-"""The verdicts on record are those of another draw of all noise, and follow from the numbers.
-
-Most claims rest on tests of their own, which they name; those here are for the rest.
-"""
-
-import json
+"""What claims of the paper rest on, where no other test has it."""
 
 import numpy as np
 import pytest
 
 from dopplerlib import RadarArray, constant_velocity, crlb, doppler_shift
-from dopplerlib.replication.deviations import read_deviations
+from dopplerlib.replication.documents import read_document
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.published import data_file
-from tests.claims import (
-    ROOT,
-    check_flips,
-    check_references,
-    check_verdicts,
-    claims_of,
-    evidence_of,
-)
 
-DOCUMENT = "mittermaier2016"
-SEED = 7  # not that of the page
-
-
-@pytest.fixture(scope="module")
-def evidence():
-    return evidence_of(DOCUMENT, SEED)
-
-
-def test_references():
-    check_references(DOCUMENT)
-
-
-def test_verdicts(evidence):
-    check_verdicts(DOCUMENT, evidence)
-
-
-def test_a_verdict_flips_when_the_number_is_wrong(evidence):
-    check_flips(DOCUMENT, evidence)
+CLAIMS = read_document("mittermaier2016").claims
 
 
 def test_every_part_of_the_paper_has_claims():
-    told = " ".join(claim.where for claim in claims_of(DOCUMENT))
+    told = " ".join(claim.where for claim in CLAIMS)
     for part in ("Section 2", "Section 3", "Section 4", "Eq 10", "Table 1", "Table 2"):
         assert part in told
     for figure in (3, 4, 5, 6):
         assert f"Fig {figure}" in told
 
 
-def test_a_deviation_leads_to_a_cell_and_to_claims():
-    ids = [claim.id for claim in claims_of(DOCUMENT)]
-    for one in read_deviations(data_file("deviations.toml")).entries:
-        assert set(one.claims) <= set(ids), one.id
-        notebook = json.loads((ROOT / "book" / f"{one.page}.ipynb").read_text(encoding="utf-8"))
-        assert one.cell in [cell["id"] for cell in notebook["cells"]], one.id
-
-
-def test_every_underdetermined_claim_is_a_gap_that_is_listed():
-    listed = {
-        name for one in read_deviations(data_file("deviations.toml")).entries for name in one.claims
-    }
-    for claim in claims_of(DOCUMENT):
-        if claim.verdict == "underdetermined":
-            assert claim.id in listed, claim.id
-
-
 def test_what_the_paper_quotes_is_what_is_judged():
     """The numbers of claims.toml and of table2.json were typed independently."""
-    quoted, published = paper.quoted(), {c.id: c.published for c in claims_of(DOCUMENT)}
+    quoted, published = paper.quoted(), {c.id: c.published for c in CLAIMS}
     assert published["nis-average"] == published["nis-average-drawn"] == quoted["nis_avg"]
     assert published["nis-inside"] == pytest.approx(100 * quoted["fraction_nis_inside_95"])
     assert list(published["chi-square-interval"]) == quoted["nis_bounds_95"]

@@ -1,55 +1,56 @@
-"""Checks that the claims of every document have to pass; see tests/systems/*/test_claims.py."""
+"""Checks that the claims of every document have to pass: all of them in test_documents.py."""
 
 import ast
 import json
 from dataclasses import replace
-from importlib import import_module
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
-from dopplerlib.replication.claims import read_claims
 from dopplerlib.replication.verdicts import Draws, Readings, judge, judge_all
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 FAR = 1e12  # no quantity of any document comes near, in any unit
 
 
-def claims_of(document):
-    return read_claims(ROOT / "data" / document / "claims.toml")
+@cache
+def cells(page):
+    """Return the ids of the cells of a chapter that hold code."""
+    text = (ROOT / "book" / f"{page}.ipynb").read_text(encoding="utf-8")
+    return {cell["id"] for cell in json.loads(text)["cells"] if cell["cell_type"] == "code"}
 
 
-def evidence_of(document, seed):
-    room = import_module(f"dopplerlib.systems.{document}")
-    module = room.evidence if "evidence" in dir(room) else room.claims
-    return module.evidence(rng=np.random.default_rng(seed))
+@cache
+def functions(path):
+    """Return the names of the functions of a file."""
+    tree = ast.parse((ROOT / path).read_text(encoding="utf-8"))
+    return {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
 
 
-def check_references(document):
-    """The cell and the test that a claim names are there."""
-    for claim in claims_of(document):
-        notebook = ROOT / "book" / f"{claim.page}.ipynb"
-        cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
-        assert claim.cell in [c["id"] for c in cells if c["cell_type"] == "code"], claim.id
-        path, _, name = claim.test.partition("::")
-        tree = ast.parse((ROOT / path).read_text(encoding="utf-8"))
-        assert name in [node.name for node in tree.body if isinstance(node, ast.FunctionDef)], (
-            claim.id
-        )
+def check_cells(entries):
+    """The cells that claims or deviations name are there."""
+    assert [one.id for one in entries if one.cell not in cells(one.page)] == []
 
 
-def check_verdicts(document, evidence):
+def check_tests(claims):
+    """The tests that claims name are there."""
+    named = {one.id: one.test.partition("::") for one in claims}
+    assert [id for id, (path, _, name) in named.items() if name not in functions(path)] == []
+
+
+def check_verdicts(claims, evidence):
     """The verdicts on record are those of this evidence, and another seed would hardly differ."""
-    judgments = judge_all(claims_of(document), evidence)
+    judgments = judge_all(claims, evidence)
     found = {one.claim.id: one.verdict for one in judgments}
     assert found == {one.claim.id: one.claim.verdict for one in judgments}
     assert [one.claim.id for one in judgments if not one.decided] == []
 
 
-def check_flips(document, evidence):
+def check_flips(claims, evidence):
     """A verdict follows from the number: with ours it is good, and just beyond ours it is bad."""
-    for claim in claims_of(document):
+    for claim in claims:
         for one in _readings(evidence[claim.id]):
             for right in _right(claim, one):
                 assert _verdict(claim, one, right) in ("reproduced", "typical"), claim.id
