@@ -105,7 +105,7 @@ def test_no_cell_hides_its_value_with_a_semicolon(path):
     assert [label for label, c in code_cells(path) if c.source.rstrip().endswith(";")] == []
 
 
-@pytest.mark.parametrize("path", [*PAGES, ROOT / "README.md", ROOT / "CONTRIBUTING.md"], ids=lambda p: p.name)
+@pytest.mark.parametrize("path", [*PAGES, *sorted(ROOT.glob("*.md"))], ids=lambda p: p.name)
 def test_every_link_to_a_file_resolves(path):
     targets = [t for t in LINK.findall(prose(path)) if not re.match(r"\w+:", t)]
     missing = [t for t in targets if not (path.parent / t).exists()]
