@@ -43,7 +43,7 @@ class ConfidenceInterval:
 
     @property
     def half_width(self) -> float:
-        """Half the length of the interval: what stands after ± where it is nearly symmetric.
+        """Half the length of the interval, the number after ± where it is nearly symmetric.
 
         It is infinite if an end is.
         """
