@@ -1,6 +1,6 @@
 """The verdict on a claim: what the document says beside what we find."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from reprlib import repr as short
 from typing import Any
 
@@ -11,45 +11,12 @@ from .._records import record
 from .._typing import ArrayLike
 from ..evaluation.intervals import ConfidenceInterval, proportion_interval
 from .claims import Claim, check_claim
+from .readings import Draws, Readings
 
 # Share of our runs that a typical draw leaves on either side of it.
 _TAIL = 0.025
 
 _HOLDS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal}
-
-
-@record
-class Draws:
-    """Evidence on the outcome of a random run: what it is in many runs of ours.
-
-    Attributes
-    ----------
-    values : array_like, shape (runs,)
-        The same quantity in independent runs.
-    published : float, optional
-        The document's, if its ``claims.toml`` cannot state it.
-    """
-
-    values: np.ndarray
-    published: float | None = None
-
-    def __post_init__(self):
-        """Keep the values, also those of an iterator: they are looked at more than once."""
-        if isinstance(self.values, Iterator):
-            object.__setattr__(self, "values", tuple(self.values))
-
-
-@record
-class Readings:
-    """Evidence on a claim that leaves something open: one piece for each way to read it.
-
-    Attributes
-    ----------
-    by_name : dict
-        A float, `ConfidenceInterval` or `Draws` for each reading.
-    """
-
-    by_name: dict
 
 
 @record

@@ -50,7 +50,8 @@ from dopplerlib.model.ranging_noise import (
 )  # fmt: skip
 from dopplerlib.model.twin import planar_twin
 from dopplerlib.replication.claims import Claim
-from dopplerlib.replication.verdicts import Draws, judge
+from dopplerlib.replication.readings import Draws
+from dopplerlib.replication.verdicts import judge
 from dopplerlib.signal.impairments import add_iq_imbalance, image_rejection, quantize
 from dopplerlib.signal.synthesis import iq_from_geometry, iq_from_velocity, tone, velocity_profile
 

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
-from dopplerlib.replication.verdicts import Draws, Readings, judge, judge_all
+from dopplerlib.replication.readings import Draws, Readings
+from dopplerlib.replication.verdicts import judge, judge_all
 
 ROOT = Path(__file__).resolve().parents[2]
 FAR = 1e12  # no quantity of any document comes near, in any unit

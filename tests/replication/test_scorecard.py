@@ -6,8 +6,9 @@ import numpy as np
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.replication.claims import Claim
+from dopplerlib.replication.readings import Draws, Readings
 from dopplerlib.replication.scorecard import Scorecard
-from dopplerlib.replication.verdicts import Draws, Readings, judge
+from dopplerlib.replication.verdicts import judge
 
 CLAIMS = {
     "nis": Claim("nis", "Fig 6", "NIS", "random", "typical", "figure6", "nis-cell",

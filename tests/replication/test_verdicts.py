@@ -9,7 +9,8 @@ import pytest
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.replication.claims import Claim, read_claims
-from dopplerlib.replication.verdicts import Draws, Readings, judge, judge_all
+from dopplerlib.replication.readings import Draws, Readings
+from dopplerlib.replication.verdicts import judge, judge_all
 
 NUMBER = Claim(
     "a", "Sec 1", "a is", "deterministic", "reproduced", "p", "c", "t", published=0.25,

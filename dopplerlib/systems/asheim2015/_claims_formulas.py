@@ -5,7 +5,7 @@ import numpy as np
 from ...estimation.linear_kalman import kf
 from ...estimation.radial_velocity import radial_velocity_terms
 from ...model.range_rate import range_rate, range_rate_jacobian
-from ...replication.verdicts import Readings
+from ...replication.readings import Readings
 from .expected_error import error_area, one_scan_bound
 from .in_the_plane import range_and_angle_jacobian
 from .published import deviations, quoted, resolutions, scenario, settings, snr

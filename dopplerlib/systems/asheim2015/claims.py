@@ -7,7 +7,7 @@ from ...estimation import gaussian, recursion
 from ...estimation.linear_kalman import kf
 from ...estimation.radial_velocity import radial_velocity_update
 from ...evaluation.intervals import proportion_interval
-from ...replication.verdicts import Draws, Readings
+from ...replication.readings import Draws, Readings
 from ._claims_formulas import settings_and_formulas
 from .measures import departure, distance_error, rmse_ratio, usable_range, usable_ratio
 from .one_radar import filter_radar

@@ -5,7 +5,7 @@ import numpy as np
 from ... import _checks
 from ...evaluation.intervals import mean_interval, proportion_interval, quantile_interval
 from ...model.polar_radar import polar_radar_jacobian
-from ...replication.verdicts import Readings
+from ...replication.readings import Readings
 from ...signal import fsk, waveforms
 from . import chain, chain_study, crossing, lag, polar, regions, signals, tracking
 from .published import KMH, paths, settings

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...evaluation.intervals import quantile_interval
-from ...replication.verdicts import Readings
+from ...replication.readings import Readings
 from ...signal.laws import integrated_snr_for_std
 from .chain_bounds import position_bound, position_bound_iq, record_for
 from .chain_errors import judged

@@ -5,7 +5,7 @@ import numpy as np
 from ...evaluation.bounds import crlb
 from ...evaluation.consistency import chi2_interval
 from ...model.doppler import doppler_jacobian, doppler_shift
-from ...replication.verdicts import Readings
+from ...replication.readings import Readings
 from .published import (
     published_figure3,
     published_figure4,

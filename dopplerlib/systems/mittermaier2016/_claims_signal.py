@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
-from ...replication.verdicts import Readings
+from ...replication.readings import Readings
 from ...signal.frequency import ml_frequency
 from ...signal.interpolation import peak_bin
 from ...signal.laws import (

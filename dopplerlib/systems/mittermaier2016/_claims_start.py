@@ -8,7 +8,7 @@ from ...evaluation.intervals import (
     proportion_interval,
     quantile_interval,
 )
-from ...replication.verdicts import Draws, Readings
+from ...replication.readings import Draws, Readings
 from .error_map import figure3, figure3_bound, shares_above
 from .map_readings import figure3_readings
 from .published import published_figure3

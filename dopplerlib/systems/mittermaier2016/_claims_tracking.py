@@ -18,7 +18,7 @@ from ...model.doppler import doppler_jacobian, doppler_shift
 from ...model.motion import constant_velocity
 from ...model.radar_array import RadarArray
 from ...model.simulation import simulate
-from ...replication.verdicts import Draws, Readings
+from ...replication.readings import Draws, Readings
 from .published import published_figure6, scenario, table2
 from .start import table2_starts
 from .tracking import figure6

@@ -9,7 +9,7 @@ import numpy as np
 
 from ... import _checks
 from ...evaluation.intervals import ConfidenceInterval, mean_interval, quantile_interval
-from ...replication.verdicts import Readings
+from ...replication.readings import Readings
 from .algorithms import run_algorithms
 from .doppler_filter import measurement_variance
 from .noise import residual_variance, updated_residual
