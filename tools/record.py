@@ -2,8 +2,9 @@
 
 Hashes, versions, seeds and the verdicts under other seeds go to book/reproducibility.md, which
 is not edited by hand. Nothing is written unless every chapter comes out as it is stored, byte for
-byte, and every verdict is the one on record; an interrupted run starts over. With --hashes nothing
-runs and only the hashes are renewed: after a change to one chapter the rest still holds.
+byte, and every verdict is the one on record; an interrupted run starts over. After a change to one
+chapter or document the rest still holds: with --hashes nothing runs and only the hashes are
+renewed, and with documents named only their claims are judged.
 """
 
 import hashlib
@@ -117,27 +118,28 @@ def chapters_repeat():
     return not bad
 
 
-def seeds_tried():
-    """Judge all claims with other seeds; return the section, or None if a verdict differs."""
-    found = judged.verdicts_by_seed(documents(), SEEDS_TRIED)
+def seeds_tried(names):
+    """Judge the claims of documents with other seeds; return rows by document, None if one differs.
+
+    A row has the seed, and how many claims got each verdict.
+    """
+    found = judged.verdicts_by_seed(names, SEEDS_TRIED)
     different = judged.differences(found, {name: judged.on_record(name) for name in found})
     print(*different, sep="\n", file=sys.stderr)
-    rows = [
-        (name, seed, *(list(by_claim.values()).count(verdict) for verdict in VERDICTS))
+    rows = {
+        name: [
+            (seed, *(list(by_claim.values()).count(verdict) for verdict in VERDICTS))
+            for seed, by_claim in by_seed.items()
+        ]
         for name, by_seed in found.items()
-        for seed, by_claim in by_seed.items()
-    ]
-    text = f"""The numbers of random results do, the verdicts do not. `make record` draws all noise
-behind every claim again, with three seeds, and fails if one
-verdict is not that on record.
-
-{table(("document", "seed", *VERDICTS), rows)}"""
-    return None if different else text
+    }
+    return None if different else rows
 
 
-def page(measured):
-    """Return the page as text; `measured` holds the sections that take a run, by title."""
+def page(ran, tried):
+    """Return the page as text, given the section on where it ran and the rows of `seeds_tried`."""
     chapter_table, data_table = hash_tables()
+    rows = [(name, *row) for name in sorted(tried) for row in tried[name]]
     return f"""(sec-reproducibility)=
 # Can you repeat it?
 
@@ -150,7 +152,7 @@ where they were last made.
 
 ## {RAN}
 
-{measured[RAN]}
+{ran}
 
 ## Results
 
@@ -161,7 +163,11 @@ figures. Seeds are those that its cells hand to `numpy.random.default_rng`.
 
 ## {SEEDS}
 
-{measured[SEEDS]}
+The numbers of random results do, the verdicts do not. `make record` draws all noise
+behind every claim again, with three seeds, and fails if one
+verdict is not that on record.
+
+{table(("document", "seed", *VERDICTS), rows)}
 
 ## Data
 
@@ -176,10 +182,14 @@ reproduces it, for whoever wants to check the replication formally.
 
 
 def recorded(text):
-    """Return the sections of a page that take a run, by title."""
-    return {
-        title: text.split(f"\n## {title}\n")[1].split("\n## ")[0].strip() for title in (RAN, SEEDS)
-    }
+    """Return what of a page takes a run: the section on where it ran, and the rows by document."""
+    ran, tried = (
+        text.split(f"\n## {title}\n")[1].split("\n## ")[0].strip() for title in (RAN, SEEDS)
+    )
+    rows = {}
+    for name, numbers in re.findall(r"^\| (\w+) \| (\d[\d |]*) \|$", tried, flags=re.MULTILINE):
+        rows.setdefault(name, []).append(tuple(map(int, numbers.split(" | "))))
+    return ran, {name: rows[name] for name in rows if name in documents()}
 
 
 def main(argv=None):
@@ -188,17 +198,19 @@ def main(argv=None):
     options.add_argument(
         "--hashes", action="store_true", help="run nothing, keep what was measured"
     )
+    options.add_argument("documents", nargs="*", help="judge these only, and execute no chapter")
     chosen = options.parse_args(argv)
     writable(PAGE)
-    if chosen.hashes:
-        measured = recorded(PAGE.read_text(encoding="utf8"))
+    if chosen.hashes or chosen.documents:
+        ran, known = recorded(PAGE.read_text(encoding="utf8"))
+        tried = seeds_tried(chosen.documents) if chosen.documents else {}
     else:
         print("all chapters, then all claims; interrupted, it starts over", file=sys.stderr)
-        repeated, tried = chapters_repeat(), seeds_tried()
-        if not repeated or tried is None:
-            return 1
-        measured = {RAN: where_it_ran(), SEEDS: tried}
-    write_text(PAGE, page(measured))
+        repeated, ran, known = chapters_repeat(), where_it_ran(), {}
+        tried = seeds_tried(documents()) if repeated else None
+    if tried is None:
+        return 1
+    write_text(PAGE, page(ran, known | tried))
     return 0
 
 

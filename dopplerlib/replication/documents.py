@@ -55,8 +55,8 @@ def documents() -> tuple[str, ...]:
 
     Examples
     --------
-    >>> documents()
-    ('asheim2015', 'macaveiu2013', 'mittermaier2016', 'sombatsatien', 'valarmathi')
+    >>> "sombatsatien" in documents()
+    True
     """
     folders = data().iterdir()
     return tuple(sorted(one.name for one in folders if one.joinpath("claims.toml").is_file()))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from dopplerlib.replication.documents import documents
 from studies.__main__ import names
 from tools.notebooks import ROOT, chapters
 
@@ -14,6 +15,7 @@ MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 TARGETS = set(re.findall(r"^\.PHONY: (\S+)$", MAKEFILE, flags=re.MULTILINE)) - {"FORCE"}
 NAMED = {
     "chapter": {path.stem for path in chapters()},
+    "record": set(documents()),
     "study": set(names()),
     "bench": {path.stem for path in (ROOT / "benchmarks").glob("*.py")},
 }
