@@ -2,13 +2,13 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
-from dopplerlib.replication.claims import Claim, read_claims
+from dopplerlib.replication.claims import Claim
+from dopplerlib.replication.documents import documents, read_document
 from dopplerlib.replication.readings import Draws, Readings
 from dopplerlib.replication.verdicts import judge, judge_all
 
@@ -97,6 +97,13 @@ def test_readings_that_differ_leave_the_claim_underdetermined_and_name_the_neare
     assert (found.verdict, found.reading, found.ours) == ("underdetermined", "hit", 0.25)
 
 
+def test_readings_are_decided_only_if_each_of_them_is():
+    near = ConfidenceInterval(0.8, 0.65, 0.95)
+    assert not judge(LIMIT, near).decided
+    assert not judge(LIMIT, Readings({"far": 0.5, "near": near})).decided
+    assert judge(LIMIT, Readings({"far": 0.5, "farther": 0.4})).decided
+
+
 def test_the_evidence_may_bring_the_number_of_a_curve():
     claim = replace(RUN, published=None)
     assert judge(claim, Draws(HUNDRED, published=50.0)).verdict == "typical"
@@ -131,8 +138,7 @@ def test_evidence_of_the_wrong_kind_is_refused(claim, evidence, message):
         judge(claim, evidence)
 
 
-DOCUMENTS = sorted((Path(__file__).resolve().parents[2] / "data").glob("*/*claims.toml"))
-CLAIMS = [claim for path in DOCUMENTS for claim in read_claims(path)]
+CLAIMS = [claim for name in documents() for claim in read_document(name).claims]
 NOTHING = [
     np.nan,
     -np.inf,
@@ -166,8 +172,8 @@ NOTHING = [
 
 
 def test_the_documents_are_all_there():
-    assert len(DOCUMENTS) >= 6
-    assert len(CLAIMS) >= 222
+    assert len(documents()) >= 5
+    assert len(CLAIMS) >= 229
 
 
 @pytest.mark.parametrize("evidence", NOTHING, ids=lambda value: str(value)[:40])
