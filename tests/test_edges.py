@@ -46,7 +46,8 @@ NUMBERS = [
 def test_every_public_function_is_tried():
     """What `ekf_update` is made of is tried through it."""
     inside = {extended_update.linearized, extended_update.wrapped}
-    assert set(public_functions()) == set(EVERY) | inside
+    untried = set(public_functions()) - set(EVERY) - inside
+    assert not untried, "needs a valid call in CALLS of tests/estimates.py"
 
 
 @pytest.mark.parametrize("function", EVERY, ids=label)

@@ -19,7 +19,10 @@ COMPILED = ("estimation, compiled", "figures.figure6")
 
 
 def part_calls(dl, np):
-    """Return {what: function without arguments}: one at least for each package but the figures."""
+    """Return {what: function without arguments}: one at least for each package but the figures.
+
+    Of the systems these are some that read files, or compile; `judged` reads what all have.
+    """
     s, rng = dl.systems, np.random.default_rng(1)
     ring, x0, one = dl.RadarArray.ring(6, 0.2), [1.0, 0, 0, -1, 0, 0], np.eye(1)
     nodes = np.arange(3.0)
@@ -34,13 +37,13 @@ def part_calls(dl, np):
         "chain": lambda: dl.chain.baseband.Baseband.from_samples(np.ones((6, 500)), 1e3, ring).fs,
         "evaluation": lambda: dl.chi2_interval(6),
         "replication": lambda: judged(dl, rng),
-        "asheim2015": lambda: s.asheim2015.deviations([1.0, 2.0]),
-        "macaveiu2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
-        "mittermaier2016": lambda: s.mittermaier2016.published_figure6().nis,
-        "mittermaier2016, scenario": lambda: s.mittermaier2016.scenario().truth,
-        "sombatsatien": lambda: s.sombatsatien.reported_record(),
-        "valarmathi": lambda: s.valarmathi.saved_study().snrs_db,
-        "valarmathi, compiled": lambda: s.valarmathi._pair_kernel.choose(
+        "systems, asheim2015": lambda: s.asheim2015.deviations([1.0, 2.0]),
+        "systems, macaveiu2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
+        "systems, mittermaier2016": lambda: s.mittermaier2016.published_figure6().nis,
+        "systems, scenario": lambda: s.mittermaier2016.scenario().truth,
+        "systems, sombatsatien": lambda: s.sombatsatien.reported_record(),
+        "systems, valarmathi": lambda: s.valarmathi.saved_study().snrs_db,
+        "systems, compiled": lambda: s.valarmathi._pair_kernel.choose(
             0.1, 2.0, nodes, nodes, np.ones((3, 3)), nodes
         ),
     }

@@ -135,11 +135,11 @@ def used(root, *options, flags=(), **environment):
 
 
 def test_every_part_of_the_library_is_called():
-    packages = {path.parent.name for path in (ROOT / "dopplerlib").rglob("__init__.py")}
-    assert (
-        packages - {"dopplerlib", "derive", "figures", "systems"}
-        <= part_calls(dopplerlib, np).keys()
-    )
+    """The files of all documents are read by one of the calls."""
+    packages = {path.parent.name for path in (ROOT / "dopplerlib").glob("*/__init__.py")}
+    assert packages - {"derive", "figures"} <= {
+        name.split(",")[0] for name in part_calls(dopplerlib, np)
+    }
 
 
 @pytest.mark.skipif(listed() is None, reason="git is not here, or has no project here")
