@@ -4,6 +4,7 @@ import json
 import sys
 
 import pytest
+import yaml
 
 from tools import matrix as tool
 
@@ -73,3 +74,12 @@ def test_a_failure_fails_the_whole_and_keeps_nothing_from_being_tried(
 def test_where_no_python_is_found_nothing_has_passed(monkeypatch, tmp_path, python):
     monkeypatch.setattr(tool, "FOLDER", tmp_path / "matrix")
     assert tool.main([python("old", ["CPython", 3, 10, 13])]) == 1
+
+
+def test_the_public_workflow_tries_the_same_pythons_and_the_oldest_packages():
+    path = tool.ROOT / ".github" / "workflows" / "test.yml"
+    jobs = yaml.safe_load(path.read_text(encoding="utf-8"))["jobs"]
+    names = [f"{major}.{minor}" for major, minor in tool.TRIED]
+    assert jobs["test"]["strategy"]["matrix"]["python"] == names
+    steps = [step for step in jobs["oldest"]["steps"] if "with" in step]
+    assert [step["with"]["python-version"] for step in steps] == names[:1]
