@@ -8,7 +8,6 @@ import argparse
 import ast
 import json
 import platform
-import sys
 from contextlib import closing
 from importlib import import_module
 from importlib.metadata import version
@@ -44,7 +43,7 @@ def run(name, folder=RESULTS):
     items = list(study.items())
     with started(folder / name, items, **study.PARAMETERS) as part:
         with closing(study.rows(part.left)) as rows:
-            for _ in progress_bar(part.left, name):
+            for _ in progress_bar(part.left, name, wanted=len(items) > 1):
                 part.keep(next(rows))
         contents = [*study.contents(part.rows), provenance(study, name)]
         with replacing(*files(study, name, folder), folder / f"{name}.toml") as unfinished:
@@ -96,4 +95,4 @@ def main(argv=None):
 
 
 if __name__ == "__main__":
-    sys.exit(start(main))
+    start(main)
