@@ -17,6 +17,9 @@ from .estimation.extended_kalman import ekf as ekf
 from .estimation.extended_kalman import gate_bounds as gate_bounds
 from .estimation.extended_update import ekf_update as ekf_update
 from .estimation.imm import imm as imm
+from .estimation.imm import imm_start as imm_start
+from .estimation.imm import imm_step as imm_step
+from .estimation.imm_records import ImmModel as ImmModel
 from .estimation.linear_kalman import kf as kf
 from .estimation.linear_kalman import kf_predict as kf_predict
 from .estimation.linear_kalman import kf_update as kf_update
@@ -66,6 +69,7 @@ from .tracking.management import TrackManager as TrackManager
 __all__ = [
     "Baseband",
     "DopplerRecord",
+    "ImmModel",
     "InitialEstimate",
     "IqTrack",
     "RadarArray",
@@ -92,6 +96,8 @@ __all__ = [
     "gate_bounds",
     "gnn_assign",
     "imm",
+    "imm_start",
+    "imm_step",
     "innovation_mean",
     "innovation_whiteness",
     "iq_from_geometry",

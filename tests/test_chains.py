@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import (
+    ImmModel,
     RadarArray,
     constant_velocity,
     doppler_shift,
@@ -69,7 +70,8 @@ def everything_takes(x, P, F, Q, H, R):
     yield ekf_innovation(x, P, z, *nonlinear, R)[1]
     yield ekf_update(x, P, z, *nonlinear, R)[1]
     yield kf([z] * 3, F, Q, H, R, x, P).P
-    yield imm([z] * 3, [F, F], [Q, 9 * Q], H, R, [[0.9, 0.1], [0.1, 0.9]], x, P).P
+    models = [ImmModel(F, noise, H, R) for noise in (Q, 9 * Q)]
+    yield imm([z] * 3, models, [[0.9, 0.1], [0.1, 0.9]], x, P).P
     yield pda_update(x, P, [z, z + 1], H, R, detection=0.9, density=0.1).P
     yield rts_smooth([x] * 3, [P] * 3, F, Q)[1]
     yield fuse_state_vectors(x, P, x, P + np.diag(np.diag(P)))[1]
@@ -118,7 +120,8 @@ def test_a_chain_of_all_functions_stays_a_covariance(ratio):
         x, P, _, _ = radial_velocity_update(x[swap], P[swap][:, swap], 0.1, 0.1)
         x, P = x[swap], P[swap][:, swap]
         step = pda_update(x, P, [z, z + 0.1], H, R, detection=0.9, density=1e-3)
-        modes = imm([z], [F, F], [Q, 9 * Q], H, R, [[0.9, 0.1], [0.1, 0.9]], step.x, step.P)
+        models = [ImmModel(F, noise, H, R) for noise in (Q, 9 * Q)]
+        modes = imm([z], models, [[0.9, 0.1], [0.1, 0.9]], step.x, step.P)
         x, P = fuse_state_vectors(modes.x[-1], modes.P[-1], x, P)
         x, P = covariance_intersection(x, P, step.x, step.P)
         x, P = (v[0] for v in rts_smooth([x, step.x], [P, step.P], F, Q))
@@ -188,10 +191,10 @@ def test_a_start_in_the_plane_is_followed_as_in_fewer_dimensions(turn):
     want, want_P = rts_smooth(small.x, small.P, F2, Q2)
     np.testing.assert_allclose(flat(smooth), want, rtol=0, atol=1e-10)
     np.testing.assert_allclose((turn.T @ covariance @ turn)[:, :2, :2], want_P, rtol=0, atol=1e-10)
-    modes = imm(z, [F] * 2, [Q, 9 * Q], H, R, [[0.9, 0.1], [0.1, 0.9]], x0, P0)
-    fewer = imm(
-        z, [F2] * 2, [Q2, 9 * Q2], H2, R, [[0.9, 0.1], [0.1, 0.9]], [0.3, -0.1], np.diag([1, 0.5])
-    )
+    models = [ImmModel(F, noise, H, R) for noise in (Q, 9 * Q)]
+    modes = imm(z, models, [[0.9, 0.1], [0.1, 0.9]], x0, P0)
+    models = [ImmModel(F2, noise, H2, R) for noise in (Q2, 9 * Q2)]
+    fewer = imm(z, models, [[0.9, 0.1], [0.1, 0.9]], [0.3, -0.1], np.diag([1, 0.5]))
     np.testing.assert_allclose(flat(modes.x), fewer.x, rtol=0, atol=1e-11)
     settings = {"detection": 0.9, "density": 0.1}
     step = pda_update(x0, P0, z[:3], H, R, **settings)

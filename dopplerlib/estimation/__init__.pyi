@@ -3,8 +3,10 @@ from . import extended_kalman as extended_kalman
 from . import extended_update as extended_update
 from . import gaussian as gaussian
 from . import imm as imm
+from . import imm_records as imm_records
 from . import linear_kalman as linear_kalman
 from . import maximum_likelihood as maximum_likelihood
+from . import models as models
 from . import nonlinear_kalman as nonlinear_kalman
 from . import radial_velocity as radial_velocity
 from . import recursion as recursion

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
-from . import gaussian, recursion
+from . import gaussian, models, recursion
 from .track import Track
 
 
@@ -203,12 +203,7 @@ def kf(
     P = P0.reshape(*alone, n, n) if shared else _checks.each_run("P0", P0, batch, (n, n))
     seen = first.reshape(*alone, samples, m) if shared else there
 
-    def predict(k, x, P):
-        return gaussian.predict(x, P, F[k], Q[k])
-
-    def correct(k, x, P):
-        innovation = gaussian.innovation(x, z[..., k, :], H[k])
-        return innovation, *gaussian.gain(P, H[k], R[k], seen[..., k, :])
-
-    track = recursion.filter_records(x, P, predict, correct, range(samples), len(batch))
+    motion = models.linear_motion(F, Q)
+    measurement = models.linear_measurement(z, H, R, seen)
+    track = recursion.filter_records(x, P, motion, measurement, range(samples), len(batch))
     return recursion.finite("F, Q, H, R, x0, P0, z", track)

@@ -3,13 +3,11 @@
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal
 
-import numpy as np
-
 from .. import _checks
 from .._typing import ArrayLike
-from . import gaussian, recursion, sigma_points
+from . import models, recursion, sigma_points
+from ._functions import each
 from .extended_kalman import gate_bounds
-from .extended_update import linearized, wrapped
 from .track import Track
 
 Function = Callable[..., Any] | Sequence[Callable[..., Any]]  # for all samples, or each
@@ -96,18 +94,12 @@ def ekf_records(
     """
     z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability)
     batch, (K, m), n = z.shape[:-2], z.shape[-2:], x.shape[-1]
-    f, F = _each("f", f, K, (batch, (n,))), _each("F", F, K, (batch, (n, n)))
-    h, H = _each("h", h, K, (batch, (m,))), _each("H", H, K, (batch, (m, n)))
+    f, F = each("f", f, K, (batch, (n,))), each("F", F, K, (batch, (n, n)))
+    h, H = each("h", h, K, (batch, (m,))), each("H", H, K, (batch, (m, n)))
 
-    def predict(k, x, P):
-        _, P = gaussian.predict(x, P, F[k](x), Q[k])
-        return f[k](x), P
-
-    def correct(k, x, P):
-        innovation, J = linearized(x, z[..., k, :], h[k], H[k], wrap)
-        return innovation, *gaussian.gain(P, J, R[k], ~np.isnan(innovation))
-
-    track = recursion.filter_records(x, P, predict, correct, range(K), len(batch), bounds)
+    motion = models.extended_motion(f, F, Q)
+    measurement = models.extended_measurement(z, h, H, R, wrap)
+    track = recursion.filter_records(x, P, motion, measurement, range(K), len(batch), bounds)
     return recursion.finite("z, f, F, Q, h, H, R, x0, P0", track)
 
 
@@ -205,20 +197,11 @@ def ukf(
     if points == "cubature":
         scale = sigma_points.scaling(n)
     many = (*batch, 2 * n + 1)
-    f, h = _each("f", f, K, (many, (n,))), _each("h", h, K, (many, (m,)))
+    f, h = each("f", f, K, (many, (n,))), each("h", h, K, (many, (m,)))
 
-    def predict(k, x, P):
-        mean, FL, rest = sigma_points.regression(f[k], x, gaussian.square_root(P), scale)
-        return mean, gaussian.squared(np.concatenate([FL, rest], axis=-1), Q[k])
-
-    def correct(k, x, P):
-        L = gaussian.square_root(P)
-        mean, HL, rest = sigma_points.regression(h[k], x, L, scale, wrap)
-        innovation = wrapped(z[..., k, :] - mean, wrap)
-        noise = R[k] + gaussian.squared(rest)
-        return innovation, *gaussian.gain_of_root(P, L, HL, noise, ~np.isnan(innovation))
-
-    track = recursion.filter_records(x, P, predict, correct, range(K), len(batch), bounds)
+    motion = models.sampled_motion(f, Q, scale)
+    measurement = models.sampled_measurement(z, h, R, scale, wrap)
+    track = recursion.filter_records(x, P, motion, measurement, range(K), len(batch), bounds)
     return recursion.finite("z, f, Q, h, R, x0, P0", track)
 
 
@@ -239,28 +222,3 @@ def _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability):
     bounds = gate_bounds(gate, m, gate_probability)
     wrap = _checks.components("wrap", wrap, m)
     return z, Q, R, x0, P0, wrap, bounds if gate else None
-
-
-def _each(name, functions, samples, form):
-    """Return for each sample a function whose values are checked: finite, and of `form`.
-
-    `form` is the shape of the runs and that of one value. The functions get a copy: what they write
-    to is no estimate.
-    """
-    if not isinstance(functions, (list, tuple)):
-        functions = (_checks.function(name, functions),) * samples
-    if len(functions) != samples or not all(map(callable, functions)):
-        raise ValueError(
-            f"{name} must be a function, or {samples} of them, one for each sample, got "
-            f"{len(functions)} objects"
-        )
-    runs, shape = form
-
-    def checked(function):
-        def value(x):
-            result = _checks.finite(f"{name}(x)", _checks.called(name, function, x.copy()), shape)
-            return _checks.each_run(f"{name}(x)", result, runs, shape)
-
-        return value
-
-    return tuple(map(checked, functions))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from dopplerlib import coordinated_turn, coordinated_turn_jacobian, ekf_records, imm, ukf
+from dopplerlib import coordinated_turn, coordinated_turn_jacobian, ekf_records, kf, ukf
 from dopplerlib.model.motion import ncv_transition
 
 RATES = [0.0, 1e-320, 1e-12, -1e-7, 1e-4, 0.03, 0.249, -0.251, -0.7, 2.0, -9.0]
@@ -80,8 +80,8 @@ def test_filters_find_the_rate_of_a_turn_that_constant_velocity_misses():
         assert np.abs(late[:, 4] - 0.3).mean() < 0.05
         # NIS of 2 components over 60 samples: chi-square of 120, inside five of its deviations.
         assert abs(track.nis.sum() - 120) < 5 * np.sqrt(240)
-    straight = ncv_transition(T, 2, "derivative")[None]
-    lost = imm(z, straight, Q[None, :4, :4], np.eye(2, 4), R, [[1.0]], start[:4], P0[:4, :4])
+    straight = ncv_transition(T, 2, "derivative")
+    lost = kf(z, straight, Q[:4, :4], np.eye(2, 4), R, start[:4], P0[:4, :4])
     error = [np.linalg.norm(t.x[30:, :2] - path[30:, :2], axis=-1).mean() for t in (*tracks, lost)]
     assert max(error[:2]) < 0.5 < error[2]
 

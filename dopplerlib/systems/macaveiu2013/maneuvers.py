@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...estimation.imm import imm
+from ...estimation.imm_records import ImmModel
 from ...estimation.linear_kalman import kf
 from ...estimation.smoother import rts_smooth
 from ...model.motion import cwnj_process_noise, nca_transition, ncv_transition
@@ -80,10 +81,10 @@ def two_models(z, w, s=None):
         Probability of the second model.
     """
     s = settings() if s is None else s
-    F = np.stack([ncv_transition(s.T)] * 2)
-    Q = np.stack([s.with_(w=one).E_x for one in w])
+    F, H = ncv_transition(s.T), np.eye(4)
+    models = [ImmModel(F, s.with_(w=one).E_x, H, s.E_z) for one in w]
     switch = np.array([[STAY, 1 - STAY], [1 - STAY, STAY]])
-    track = imm(z[:, 1:], F, Q, np.eye(4), s.E_z, switch, x0=z[:, 0], P0=s.E_z)
+    track = imm(z[:, 1:], models, switch, x0=z[:, 0], P0=s.E_z)
     half = np.full((len(z), 1), 0.5)
     return (
         np.concatenate([z[:, :1], track.x], axis=1),
