@@ -25,7 +25,7 @@ from tools.notebooks import ROOT, chapters, differences, executed, writable
 
 PAGE = ROOT / "book" / "reproducibility.md"
 SEED = re.compile(r"default_rng\(([\d_]+)\)")
-RAN, SEEDS = "Where it ran", "What changes with the seed"
+RAN, SEEDS = "Environment", "Verdicts under other seeds"
 SEEDS_TRIED = (1, 2, 3)
 SHOWN = 16  # hexadecimal digits of a hash: 64 bits, plenty to tell files apart
 
@@ -141,14 +141,14 @@ def page(ran, tried):
     chapter_table, data_table = hash_tables()
     rows = [(name, *row) for name in sorted(tried) for row in tried[name]]
     return f"""(sec-reproducibility)=
-# Can you repeat it?
+# Reproducibility
 
 <!-- Written by `make record`; do not edit. -->
 
-Yes, with one command: `make test` executes every chapter and compares all text that comes out with
-what is stored, and `make record` compares every byte, the figures included. Both install
-the exact versions of `environment.lock` first. This page tells what the stored results are, and
-where they were last made.
+`make test` executes every chapter and compares all text output with the stored output;
+`make record` compares every byte, figures included. Both first install the exact versions of
+`environment.lock`. This page lists the hashes of the stored results and data, and the environment
+in which they were last made.
 
 ## {RAN}
 
@@ -156,16 +156,15 @@ where they were last made.
 
 ## Results
 
-A hash is made of the first {SHOWN} digits of SHA-256, over all outputs of a chapter, text and
-figures. Seeds are those that its cells hand to `numpy.random.default_rng`.
+A hash is the first {SHOWN} digits of SHA-256 over all outputs of a chapter, text and figures.
+Seeds are the arguments of `numpy.random.default_rng` in its cells.
 
 {chapter_table}
 
 ## {SEEDS}
 
-The numbers of random results do, the verdicts do not. `make record` draws all noise
-behind every claim again, with three seeds, and fails if one
-verdict is not that on record.
+Random results change with the seed, verdicts must not. `make record` draws the noise behind every
+claim again with three other seeds, and fails if any verdict differs from the one on record.
 
 {table(("document", "seed", *VERDICTS), rows)}
 
@@ -175,9 +174,9 @@ verdict is not that on record.
 
 ## How to cite
 
-`CITATION.cff` in the root of the project names the book and the paper that it replicates; reference
-managers read it. `codecheck.yml` lists for every figure and table of the paper the file that
-reproduces it, for whoever wants to check the replication formally.
+`CITATION.cff` at the root of the project describes the book and the paper that it replicates, in a
+form that reference managers read. For a formal check of the replication, `codecheck.yml` lists the
+file that reproduces each figure and table of the paper.
 """
 
 
