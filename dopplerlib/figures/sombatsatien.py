@@ -1,25 +1,27 @@
-"""A post-mortem in pictures: symptoms, what each repair buys, and when an alarm is raised."""
+"""Figures of the chapter on a failed filter: symptoms, repairs, and alarms."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from .._hints import Array, Booleans, checked
+from ..systems.sombatsatien import PostMortem, ReportedRun
 from .style import BOUND, OURS, PUBLISHED, TRUTH, VARIANTS, styled
 
 
-def symptoms(result, told, run=0):
-    """Draw distance, speed and position error of many runs beside what the report tells of its own.
+@checked
+def symptoms(result: PostMortem, told: ReportedRun, run: int = 0) -> Figure:
+    """Draw distance, speed and position error of many runs beside the reported end values.
 
     Parameters
     ----------
     result : PostMortem
         Runs of the report's system.
-    told : dict
-        Results of the report, see `reported`.
+    told : ReportedRun
+        Results of the report.
     run : int
         Which run to draw on its own.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     x = result.track.x
     panels = (
@@ -51,20 +53,19 @@ def symptoms(result, told, run=0):
         return figure
 
 
-def repair_ranges(rows, reported):
-    """Draw what each repair makes of four quantities: median and central 95 % of the runs.
+@checked
+def repair_ranges(
+    rows: dict[str, dict[str, Array]], reported: dict[str, tuple[str, float]]
+) -> Figure:
+    """Draw median and central 95 % of the runs for each quantity and repair.
 
     Parameters
     ----------
-    rows : dict of str to dict of str to ndarray, shape (runs,)
+    rows : dict of str to dict of str to array_like, shape (runs,)
         For each variant, by its name, the same quantities by theirs.
-    reported : dict of str to float
-        What the report has, or what a right filter would have, by the name of the quantity: a pair
-        of label and number.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    reported : dict of str to tuple (str, float)
+        Value of the report or of a consistent filter, by the name of the quantity: a pair of label
+        and number.
     """
     names = list(next(iter(rows.values())))
     place = -np.arange(len(rows))
@@ -89,8 +90,9 @@ def repair_ranges(rows, reported):
         return figure
 
 
-def alarm_shares(looks, cases):
-    """Draw the share of runs in which each test has raised an alarm by a number of samples.
+@checked
+def alarm_shares(looks: Sequence[int], cases: dict[str, dict[str, Booleans]]) -> Figure:
+    """Draw the fraction of runs in which each test has raised an alarm, over the samples.
 
     Parameters
     ----------
@@ -98,10 +100,6 @@ def alarm_shares(looks, cases):
         Numbers of samples after which the tests were taken.
     cases : dict of str to dict of str to ndarray of bool, shape (runs, looks)
         For each filter, by its name, what `innovation_alarms` returned.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.9) as figure:
         axes = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
@@ -111,6 +109,6 @@ def alarm_shares(looks, cases):
                 ax.step(looks, share, where="post", color=color, ls=ls, label=name)
             ax.set(xscale="log", xlabel="samples", ylim=(-0.03, 1.03))
             ax.set_title(title, fontsize=9.5)
-        axes[0].set_ylabel("share of runs with an alarm")
+        axes[0].set_ylabel("fraction of runs")
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
         return figure

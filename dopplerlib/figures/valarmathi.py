@@ -1,9 +1,13 @@
-"""Adaptive windows and fused filters in pictures: the figures of the document, and its limits."""
+"""Figures of the chapter on windows and fusion: paths, errors, failures, correlation."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from ..evaluation.intervals import quantile_interval
-from ..systems.valarmathi import ALGORITHMS
+from .._hints import Array, checked
+from ..evaluation.intervals import ConfidenceInterval, quantile_interval
+from ..systems.valarmathi import ALGORITHMS, AlgorithmRuns, Study, VelocityPath, WindowTable
 from .style import BOUND, OURS, PUBLISHED, TRUTH, VARIANTS, styled
 
 # The color of algorithms 1 to 6, and a line and a mark for print in gray.
@@ -19,17 +23,14 @@ _STYLES = {
 _FRAME = dict(frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
 
 
-def paths(several):
-    """Draw courses of velocity.
+@checked
+def paths(several: Sequence[VelocityPath]) -> Figure:
+    """Draw velocity over time for several paths.
 
     Parameters
     ----------
     several : sequence of VelocityPath
         To draw, each with its name.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.8) as figure:
         ax = figure.subplots()
@@ -40,7 +41,8 @@ def paths(several):
         return figure
 
 
-def window_error(table, snr_db):
+@checked
+def window_error(table: WindowTable, snr_db: float) -> Figure:
     """Draw the cumulative error over the window, a line for each acceleration: Fig 3.
 
     Parameters
@@ -49,10 +51,6 @@ def window_error(table, snr_db):
         Of a simulation.
     snr_db : float
         One of its signal-to-noise ratios.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     j = int(np.flatnonzero(table.snrs_db == snr_db)[0])
     shades = np.linspace(0.75, 0.0, len(table.accelerations))
@@ -73,7 +71,10 @@ def window_error(table, snr_db):
         return figure
 
 
-def velocities(results, run=0, numbers=None):
+@checked
+def velocities(
+    results: Sequence[AlgorithmRuns], run: int = 0, numbers: Sequence[Sequence[int]] = ()
+) -> Figure:
     """Draw velocities of sensor 1, sensor 2 and both, fixed window: Figs 7 to 9 and 11 to 13.
 
     Parameters
@@ -82,16 +83,12 @@ def velocities(results, run=0, numbers=None):
         A row for each.
     run : int
         Which run to draw.
-    numbers : sequence of sequence of int, optional
+    numbers : sequence of sequence of int
         For each result, the numbers of the three figures of the document.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.5 * len(results) + 0.5) as figure:
         rows = figure.subplots(len(results), 3, sharex=True, sharey="row", squeeze=False)
-        told = numbers or [(None,) * 3] * len(results)
+        told = numbers or [(0, 0, 0)] * len(results)
         for result, axes, three in zip(results, rows, told, strict=True):
             panels = (
                 ("sensor 1", result.velocity(1, sensor=1)),
@@ -121,7 +118,13 @@ def velocities(results, run=0, numbers=None):
         return figure
 
 
-def cumulative_errors(results, lines, titles=None, ncols=2):
+@checked
+def cumulative_errors(
+    results: Sequence[AlgorithmRuns],
+    lines: Sequence[Sequence[tuple[int, int]]],
+    titles: Sequence[str] = (),
+    ncols: int = 2,
+) -> Figure:
     """Draw the running error of some algorithms, mean over the runs: Figs 10, 14, 15 and 16.
 
     Parameters
@@ -130,19 +133,15 @@ def cumulative_errors(results, lines, titles=None, ncols=2):
         A panel for each.
     lines : sequence of sequence of tuple (int, int)
         For each panel, which algorithms, and the filter of which sensor.
-    titles : sequence of str, optional
-        Of the panels; the names of the paths if None.
+    titles : sequence of str
+        Of the panels; the names of the paths if empty.
     ncols : int
-        Panels beside one another.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+        Panels side by side.
     """
     nrows = -(-len(results) // ncols)
     with styled(7.0, 2.5 * nrows + 0.5) as figure:
         axes = figure.subplots(nrows, ncols, sharex=True, squeeze=False).flat
-        titles = [result.path.name for result in results] if titles is None else titles
+        titles = titles or [result.path.name for result in results]
         for ax, result, shown, title in zip(axes, results, lines, titles, strict=True):
             time = result.time[result.during("all")]
             for algorithm, sensor in shown:
@@ -161,8 +160,9 @@ def cumulative_errors(results, lines, titles=None, ncols=2):
         return figure
 
 
-def sweep(study, failed, limits):
-    """Draw errors over the signal-to-noise ratio: in the maneuvers, and at constant velocity.
+@checked
+def sweep(study: Study, failed: float, limits: Sequence[float]) -> Figure:
+    """Draw RMS errors over the SNR: in the maneuvers, and at constant velocity.
 
     Parameters
     ----------
@@ -173,10 +173,6 @@ def sweep(study, failed, limits):
         Error in m/s from which a run has failed.
     limits : sequence of float
         Signal-to-noise ratios in dB at which the document sees its limits.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     panels = [(path, "maneuver", f"{path}, in the maneuver") for path in study.paths]
     panels.append((study.paths[1], "constant", f"{study.paths[1]}, constant velocity"))
@@ -200,24 +196,23 @@ def sweep(study, failed, limits):
         for ax in axes[:, 0]:
             ax.set_ylabel("RMSE (m/s)")
         for ax in axes[-1]:
-            ax.set_xlabel("signal-to-noise ratio (dB)")
+            ax.set_xlabel("SNR (dB)")
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
         return figure
 
 
-def failures(shares, failed_share):
-    """Draw the share of failed runs over the signal-to-noise ratio, for each path.
+@checked
+def failures(
+    shares: dict[tuple[str, int], tuple[Array, Sequence[ConfidenceInterval]]], failed_share: float
+) -> Figure:
+    """Draw the percentage of failed runs over the SNR, for each path.
 
     Parameters
     ----------
     shares : dict of (str, int) to tuple of (ndarray, sequence of ConfidenceInterval)
         By path and algorithm, as `failed_shares` returns it.
     failed_share : float
-        Share from which an algorithm has failed.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+        Fraction of failed runs from which an algorithm has failed.
     """
     paths_ = list(dict.fromkeys(path for path, _ in shares))
     with styled(7.0, 3.1) as figure:
@@ -239,17 +234,14 @@ def failures(shares, failed_share):
         return figure
 
 
-def correlation(measured, law):
+@checked
+def correlation(measured: Array, law: Array) -> Figure:
     """Draw the autocorrelation of measurement errors beside its closed form.
 
     Parameters
     ----------
-    measured, law : ndarray, shape (lags + 1,)
+    measured, law : array_like, shape (lags + 1,)
         From lag 0 on, in samples.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.8) as figure:
         ax = figure.subplots()
