@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtr, chdtrc
 
 from .. import _checks
 from .._records import record
@@ -277,7 +277,7 @@ def _memory(track):
     """
     white = np.linalg.solve(np.linalg.cholesky(track.S), track.innovation[..., None])
     products = [white[:, lag:] * white[:, :-lag] for lag in range(1, _LAGS + 1)]
-    return float(chi2.sf(sum(one.sum() ** 2 / one.size for one in products), _LAGS))
+    return float(chdtrc(_LAGS, sum(one.sum() ** 2 / one.size for one in products)))
 
 
 def _relative(value, expected):
@@ -285,4 +285,4 @@ def _relative(value, expected):
 
 
 def _two_sided(total, dof):
-    return float(2 * min(chi2.cdf(total, dof), chi2.sf(total, dof)))
+    return float(2 * min(chdtr(dof, total), chdtrc(dof, total)))

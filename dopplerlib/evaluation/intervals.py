@@ -202,14 +202,15 @@ def quantile_interval(
     >>> print(quantile_interval(range(101)))
     50 (40 to 60)
     """
-    from scipy.stats import binom
+    from scipy.special import bdtr, bdtrc
 
     values = np.sort(_runs("values", values, 1, infinite=True))
     q = _checks.probability("q", q)
     tail = (1 - _checks.probability("confidence", confidence)) / 2
     n = len(values)
     # Order statistics, counted from 1: the quantile is below the first with at most `tail`.
-    first, last = int(binom.ppf(tail, n, q)), int(binom.isf(tail, n, q)) + 1
+    first = int(np.sum(bdtr(np.arange(n), n, q) < tail))
+    last = int(np.sum(bdtrc(np.arange(n), n, q) > tail)) + 1
     low = values[first - 1] if first >= 1 else -np.inf
     high = values[last - 1] if last <= n else np.inf
     return ConfidenceInterval(_quantile(values, q), float(low), float(high))

@@ -3,7 +3,7 @@
 from typing import Literal
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtr
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray, IntArray
@@ -192,4 +192,4 @@ def nearest_ambiguity(
         path[:, :3] += T * np.arange(K)[:, None] * path[:, 3:]
     start = ml_initialize(doppler_shift(path, array), array, sigma_f, T, box, likelihood)
     distance = np.sqrt(np.maximum(start.second_cost - start.cost, 0.0))
-    return start.second_x, float(np.nan_to_num(norm.cdf(-distance / 2), nan=0.0))
+    return start.second_x, float(np.nan_to_num(ndtr(-distance / 2), nan=0.0))

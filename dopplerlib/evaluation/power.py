@@ -1,7 +1,7 @@
 """Which records a test of consistency refuses: its false alarms, and its power against faults."""
 
 import numpy as np
-from scipy.stats import chi2, norm
+from scipy.special import chdtri, gammaincinv, ndtri
 
 from .. import _checks
 from .._typing import ArrayLike, BoolArray
@@ -101,9 +101,10 @@ def rejections(
     worth = np.array([nees_samples(one, F, Q) for one in P]).reshape(track.P.shape[:-3])
 
     def outside(total, dof):
-        return (total < chi2.ppf(alarm / 2, dof)) | (total > chi2.isf(alarm / 2, dof))
+        low, high = 2 * gammaincinv(dof / 2, alarm / 2), chdtri(dof, alarm / 2)
+        return (total < low) | (total > high)
 
-    limit = norm.isf(alarm / 2 / (there.any(axis=-2).sum(axis=-1, keepdims=True)))
+    limit = -ndtri(alarm / 2 / there.any(axis=-2).sum(axis=-1, keepdims=True))
     results = (
         outside(np.nansum(nis, axis=-1), there.sum(axis=(-2, -1))),
         (np.abs(mean / deviation) > limit).any(axis=-1),

@@ -92,7 +92,7 @@ def pda_update(
     >>> step.x.tolist(), step.weight.round(2).tolist(), bool(step.P[0, 0] > 0.5)
     ([0.0], [0.49, 0.49], True)
     """
-    from scipy.stats import chi2  # here: it takes longer to load than all the rest
+    from scipy.special import gammaincinv  # here: it takes longer to load than all the rest
 
     x = _checks.finite("x", x, (None,))
     n = x.shape[-1]
@@ -109,7 +109,7 @@ def pda_update(
     nu = gaussian.innovation(x[..., None, :], z, H[..., None, :, :])
     there = ~np.isnan(nu).any(axis=-1)
     nu = np.where(there[..., None], nu, 0.0)
-    inside = there & (gaussian.quadratic_forms(nu, S) <= chi2.ppf(gate, m))
+    inside = there & (gaussian.quadratic_forms(nu, S) <= 2 * gammaincinv(m / 2, gate))
     nu = np.where(inside[..., None], nu, 0.0)
     odds = np.log(detection) - np.log(density) + gaussian.log_density(nu, S[..., None, :, :])
     weight, missed = _shares(np.where(inside, odds, -np.inf), np.log1p(-detection * gate))
