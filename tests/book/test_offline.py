@@ -24,6 +24,8 @@ REMOTE = [
     '<object data="https://example.org/a.svg"></object>',
     '<svg><image href="https://example.org/a.png"/></svg>',
     '<p style="background: url(https://example.org/a.png)">',
+    '<p class="a" style="background: url(https://example.org/a.png)">',
+    '<p title="<span>"><span class="a" src="https://example.org/a.png"></span></p>',
     '<style>@import "https://example.org/a.css";</style>',
 ]
 LOCAL = [
