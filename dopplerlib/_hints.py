@@ -110,7 +110,7 @@ Covariance = Annotated[FloatArray, exactly(6, 6, check=_covariance)]  # of a sta
 Measurements = Annotated[FloatArray, exactly(None, None, None)]  # runs, times, sensors
 # Booleans, and any numbers, NaN too.
 Booleans = Annotated[BoolArray, _checks.booleans]
-Array = Annotated[FloatArray, _checks.numbers]
+Array = Annotated[FloatArray, _checks.numbers]  # of any size, NaN too: what a figure draws
 
 _COLLECTING = inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD
 _ARRAY_LIKE = frozenset(get_args(ArrayLike))  # a union, of which a larger union keeps the parts

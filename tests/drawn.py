@@ -1,6 +1,14 @@
 """What holds for the figures of every module."""
 
+import re
+
 import matplotlib.pyplot as plt
+
+# What a label of a quantity without a unit speaks of.
+_PURE = (
+    r"\b(NIS|NEES|amplitude|autocorrelation|cee|correlation|degrees of freedom|fraction|number|"
+    r"probability|ratio|relative|runs|samples|sum)\b"
+)
 
 
 def check_figures(module, figures):
@@ -18,6 +26,19 @@ def check_figures(module, figures):
         assert figure.get_figwidth() <= 7, name
         figure.canvas.draw()
     assert plt.get_fignums() == []
+
+
+def labels(figure):
+    """Return the labels of all axes of a figure that are shown."""
+    axes = [ax for ax in figure.axes if ax.axison and ax.get_visible()]
+    every = [getattr(ax, f"get_{name}label", str)() for ax in axes for name in "xyz"]
+    return [label for label in [*every, figure.get_supxlabel(), figure.get_supylabel()] if label]
+
+
+def check_labels(figure):
+    """Fail if a label has no unit in parentheses at its end, unless its quantity has none."""
+    for label in labels(figure):
+        assert re.search(r"\S \([^()]+\)$", label) or re.search(_PURE, label), label
 
 
 def lines(ax):

@@ -171,8 +171,8 @@ def _text(value, digits):
     written = digits if isinstance(digits, str) else f"z.{digits}f"  # z: no -0.0
     plain = written.removeprefix("±")
     if isinstance(value, ConfidenceInterval):
-        ends = value.value, value.low, value.high, value.half_width
-        one, low, high, half = (_number(number, plain) for number in ends)
+        one, low, high = (_number(end, plain) for end in (value.value, value.low, value.high))
+        half = _number(value.half_width, plain.replace("+", ""))
         return f"{one} ± {half}" if plain != written else f"{one} ({low} to {high})"
     if isinstance(value, int) and not isinstance(digits, str):
         return str(value)

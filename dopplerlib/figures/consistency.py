@@ -1,8 +1,13 @@
-"""Is it right? Chi-square, averages, clouds of errors, and the causes one at a time."""
+"""Figures of the chapter on consistency: chi-square, averages, clouds of errors, causes."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
+from .._hints import Array, checked
+from ..systems.mittermaier2016 import Consistency
 from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, styled
 
 # A cause is told from the others by color, line and marker.
@@ -16,7 +21,13 @@ CAUSES = (
 )
 
 
-def chi_square(densities, interval, sums, filled):
+@checked
+def chi_square(
+    densities: dict[int, tuple[Array, Array]],
+    interval: tuple[float, ...],
+    sums: dict[int, Array],
+    filled: int,
+) -> Figure:
     """Draw chi-square densities, one with its interval filled, over histograms of simulated sums.
 
     Parameters
@@ -53,7 +64,8 @@ def chi_square(densities, interval, sums, filled):
         return figure
 
 
-def clouds(errors, covariances, names):
+@checked
+def clouds(errors: dict[str, Array], covariances: dict[str, Array], names: Sequence[str]) -> Figure:
     """Draw errors of many runs in two components, and the ellipse in which 95 % should lie.
 
     Parameters
@@ -84,13 +96,14 @@ def clouds(errors, covariances, names):
                 )
             )  # fmt: skip
             ax.set_title(label)
-            ax.set(xlabel=f"{names[0]} in m", xlim=(-0.4, 0.4), ylim=(-0.3, 0.3))
-        axes[0].set_ylabel(f"{names[1]} in m")
+            ax.set(xlabel=f"{names[0]} (m)", xlim=(-0.4, 0.4), ylim=(-0.3, 0.3))
+        axes[0].set_ylabel(f"{names[1]} (m)")
         axes[0].legend(loc="upper left")
         return figure
 
 
-def one_run(time, values, interval):
+@checked
+def one_run(time: Array, values: dict[str, Array], interval: tuple[float, ...]) -> Figure:
     """Draw statistics of a single run over time, with the interval of a single value.
 
     Parameters
@@ -113,12 +126,15 @@ def one_run(time, values, interval):
             ax.plot(time, value, color=OURS, lw=0.8, label="one run")
             ax.set(ylabel=name, ylim=(0, 25))
         axes[0].legend(loc="upper right", ncols=2)
-        axes[-1].set(xlabel="time in s", xlim=(time[0], time[-1]))
+        axes[-1].set(xlabel="time (s)", xlim=(time[0], time[-1]))
         return figure
 
 
-def averages_spread(averages, intervals):
-    """Draw how time averages are distributed over right runs, with two intervals.
+@checked
+def averages_spread(
+    averages: dict[str, Array], intervals: dict[str, dict[str, tuple[float, ...]]]
+) -> Figure:
+    """Draw the distribution of time averages over consistent runs, with two intervals.
 
     Parameters
     ----------
@@ -134,7 +150,9 @@ def averages_spread(averages, intervals):
     with styled(7.0, 3.0) as figure:
         axes = figure.subplots(1, len(averages), sharex=True)
         for ax, (name, average) in zip(axes, averages.items(), strict=True):
-            ax.hist(average, np.linspace(2, 12, 81), color=OURS, alpha=0.45, label="right runs")
+            ax.hist(
+                average, np.linspace(2, 12, 81), color=OURS, alpha=0.45, label="consistent runs"
+            )
             styles = ((TRUTH, "--"), (ORANGE, "-"))
             for (label, interval), (color, ls) in zip(
                 intervals[name].items(), styles, strict=False
@@ -142,7 +160,7 @@ def averages_spread(averages, intervals):
                 for bound, text in zip(interval, (label, None), strict=True):
                     ax.axvline(bound, color=color, ls=ls, label=text)
             ax.set(xlabel=f"{name} averaged over a run", xlim=(2, 12))
-        axes[0].set_ylabel("runs")
+        axes[0].set_ylabel("number of runs")
         handles = {}  # the panels share labels
         for ax in axes:
             handles |= {
@@ -152,7 +170,8 @@ def averages_spread(averages, intervals):
         return figure
 
 
-def causes(results, interval, median):
+@checked
+def causes(results: dict[str, Consistency], interval: tuple[float, ...], median: float) -> Figure:
     """Draw the median NEES and NIS of several filters over time, both axes logarithmic.
 
     Parameters
@@ -171,22 +190,23 @@ def causes(results, interval, median):
     with styled(7.0, 5.0) as figure:
         axes = figure.subplots(1, 2, sharex=True, sharey=True)
         for ax, name in zip(axes, ("nees", "nis"), strict=True):
-            ax.axhspan(*interval, color=BOUND, alpha=0.25, lw=0, label="95 % of right values")
+            ax.axhspan(*interval, color=BOUND, alpha=0.25, lw=0, label="95 % of consistent values")
             ax.axhline(median, color=BOUND, lw=1, label="their median")
             for (label, result), (color, ls, marker) in zip(results.items(), CAUSES, strict=False):
                 values = np.median(getattr(result, name), axis=0)
                 # The first sample, at 0, belongs to a logarithmic axis at one interval.
                 time = result.time + (result.time[1] - result.time[0])
                 ax.plot(time, values, color=color, ls=ls, marker=marker, ms=4, label=label)
-            ax.set(xscale="log", yscale="log", xlabel="time in s", ylim=(0.05, 1000))
+            ax.set(xscale="log", yscale="log", xlabel="time (s)", ylim=(0.05, 1000))
             ax.set_ylabel(f"median {name.upper()}")
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=2)
         return figure
 
 
-def claims(time, spread, claimed):
-    """Draw by how much the range is off, and what two filters say about it.
+@checked
+def claims(time: Array, spread: Array, claimed: dict[str, Array]) -> Figure:
+    """Draw the actual error of the range, and the standard deviation that two filters state.
 
     Parameters
     ----------
@@ -207,6 +227,6 @@ def claims(time, spread, claimed):
         styles = ((OURS, "--", "s"), (SENSOR, "-.", "^"))
         for (label, value), (color, ls, marker) in zip(claimed.items(), styles, strict=False):
             ax.plot(time, value, color=color, ls=ls, marker=marker, ms=4, label=label)
-        ax.set(xscale="log", yscale="log", xlabel="time in s", ylabel="range in m")
+        ax.set(xscale="log", yscale="log", xlabel="time (s)", ylabel="range (m)")
         ax.legend(loc="lower left")
         return figure

@@ -1,15 +1,20 @@
-"""One derivation, many printers: what is printed, how well derivatives agree, what a sign does."""
+"""Figures of the chapter on derivation: printed forms, errors of derivatives, a wrong sign."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
+from .._hints import Array, checked
 from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, TRUTH, styled
 
 _DOUBLE = 2.0**-53  # relative error of one rounding
 
 
-def one_text(stages, products):
-    """Draw the way from the formula to its many forms.
+@checked
+def one_text(stages: Sequence[str], products: Sequence[str]) -> Figure:
+    """Draw the path from one formula to its printed forms.
 
     Parameters
     ----------
@@ -50,7 +55,8 @@ def one_text(stages, products):
         return figure
 
 
-def derivative_errors(steps, errors):
+@checked
+def derivative_errors(steps: Array, errors: dict[str, Array]) -> Figure:
     """Draw the relative error of numerical derivatives against the step.
 
     Parameters
@@ -82,12 +88,13 @@ def derivative_errors(steps, errors):
             color=BOUND,
             fontsize=9,
         )
-        ax.set(xlabel="step in m", ylabel="relative error", ylim=(2e-17, 100))
+        ax.set(xlabel="step (m)", ylabel="relative error", ylim=(2e-17, 100))
         ax.legend(loc="center left", bbox_to_anchor=(0.03, 0.4))
         return figure
 
 
-def position_errors(time, errors):
+@checked
+def position_errors(time: Array, errors: dict[str, Array]) -> Figure:
     """Draw position errors of many runs: median, and the range of the central 95 % of the runs.
 
     Parameters
@@ -109,6 +116,6 @@ def position_errors(time, errors):
             lower, middle, upper = np.quantile(error, [0.025, 0.5, 0.975], axis=0)
             ax.fill_between(time, lower, upper, color=color, alpha=0.2, lw=0)
             ax.semilogy(time, middle, style, color=color, label=label)
-        ax.set(xlabel="time in s", ylabel="position error in m", xlim=(time[0], time[-1]))
+        ax.set(xlabel="time (s)", ylabel="position error (m)", xlim=(time[0], time[-1]))
         ax.legend(loc="lower left")
         return figure

@@ -1,12 +1,18 @@
-"""The whole chain: when a sample belongs to, what each stage costs, how long a start takes."""
+"""Figures of the chapter on the whole chain: time stamps, error budget, length of the start."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from .._hints import Array, checked
+from ..evaluation.intervals import ConfidenceInterval
 from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, styled
 
 
-def when(delay, window):
-    """Draw to which moment a window of samples belongs, and what is lost on the way.
+@checked
+def when(delay: float, window: float) -> Figure:
+    """Draw the time to which a window of samples belongs, and the delay since.
 
     Parameters
     ----------
@@ -39,7 +45,7 @@ def when(delay, window):
             ax.annotate("", (right, y), (left, y), arrowprops={"arrowstyle": "<->", "color": BOUND})
             ax.text((left + right) / 2, y - 0.12, text, ha="center", va="top", fontsize=8.5)
         ax.plot([-w / 2] * 2, [0.15, 1.25], color=BOUND, lw=0.8, ls=":")
-        ax.set(xlabel="time before now in ms", ylim=(-0.35, 2.75), yticks=[])
+        ax.set(xlabel="time before now (ms)", ylim=(-0.35, 2.75), yticks=[])
         ax.set_xlim(-1.85 * w - d, 0.22 * w)
         ticks = np.arange(0, w + d + 1, 10)
         ax.set_xticks(-ticks, [f"{tick:.0f}" for tick in ticks])
@@ -48,7 +54,11 @@ def when(delay, window):
         return figure
 
 
-def budget(rows, moments):
+@checked
+def budget(
+    rows: Sequence[tuple[str, Sequence[ConfidenceInterval], Sequence[float]]],
+    moments: Sequence[float],
+) -> Figure:
     """Draw position errors of many settings, one row each.
 
     Parameters
@@ -76,7 +86,7 @@ def budget(rows, moments):
                 ax.plot(1e3 * worse[j], i, "|", color=TRUTH, ms=9, mew=1.4)
             reference = 1e3 * rows[named[0]][1][j].value
             ax.axvline(reference, color=BOUND, lw=0.8, ls=":")
-            ax.set(xscale="log", xlabel="position error in mm", title=f"at {moment:g} s")
+            ax.set(xscale="log", xlabel="position error (mm)", title=f"at {moment:g} s")
             ax.grid(axis="y", visible=False)
         axes[0].set_yticks(named, [rows[i][0] for i in named])
         axes[0].set_ylim(len(rows) - 0.4, -0.6)
@@ -84,7 +94,13 @@ def budget(rows, moments):
         return figure
 
 
-def wrong_time(time, nis, nees, labels):
+@checked
+def wrong_time(
+    time: Array,
+    nis: Sequence[Sequence[ConfidenceInterval]],
+    nees: Sequence[Sequence[ConfidenceInterval]],
+    labels: Sequence[str],
+) -> Figure:
     """Draw averages of NIS and of NEES over time, with their intervals, for right and wrong times.
 
     Parameters
@@ -111,7 +127,7 @@ def wrong_time(time, nis, nees, labels):
                     ends = [e.low for e in each], [e.high for e in each]
                     ax.fill_between(time, *ends, color=color, alpha=0.2, lw=0)
             ax.axhline(6, color=BOUND, lw=0.9)
-            ax.set(xlabel="time in s", ylabel=f"mean {name}")
+            ax.set(xlabel="time (s)", ylabel=f"mean {name}")
         left.set_ylim(0, 12)
         right.set_yscale("log")
         left.text(time[-1], 6.2, "expected: 6", color=BOUND, ha="right", fontsize=8.5)
@@ -120,8 +136,14 @@ def wrong_time(time, nis, nees, labels):
         return figure
 
 
-def starts(lengths, errors, shares, limit):
-    """Draw what becomes of starts of different length.
+@checked
+def starts(
+    lengths: Sequence[float],
+    errors: dict[str, Sequence[Array]],
+    shares: dict[str, Sequence[ConfidenceInterval]],
+    limit: float,
+) -> Figure:
+    """Draw errors after starts of different length, and the fraction that fails.
 
     Parameters
     ----------
@@ -155,18 +177,23 @@ def starts(lengths, errors, shares, limit):
                 right.plot([place, place], [100 * share.low, 100 * share.high], color=color, lw=1.5)
                 right.plot(place, 100 * share.value, marker, color=color, ms=5)
         for ax in (left, right):
-            ax.set(xscale="log", xlabel="record of the start in ms")
+            ax.set(xscale="log", xlabel="record of the start (ms)")
             ax.set_xticks([1e3 * length for length in lengths], labels=_ms(lengths))
             ax.minorticks_off()
         left.axhline(1e3 * limit, color=BOUND, lw=0.9, ls=":")
-        left.set(yscale="log", ylabel="position error in mm")
+        left.set(yscale="log", ylabel="position error (mm)")
         left.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        right.set(ylabel=f"runs more than {100 * limit:g} cm off, %", ylim=(-3, 103))
+        right.set(ylabel=f"runs off by more than {100 * limit:g} cm (%)", ylim=(-3, 103))
         figure.legend(loc="outside upper center", ncols=2)
         return figure
 
 
-def achievable(levels, medians, bounds):
+@checked
+def achievable(
+    levels: Sequence[float],
+    medians: Sequence[ConfidenceInterval],
+    bounds: dict[str, Sequence[float]],
+) -> Figure:
     """Draw position errors over the strength of the echo.
 
     Parameters
@@ -191,8 +218,8 @@ def achievable(levels, medians, bounds):
             ax.plot([x, x], [1e3 * m.low, 1e3 * m.high], color=OURS, lw=1.8)
         values = [1e3 * m.value for m in medians]
         ax.plot(levels, values, "o", color=OURS, ms=5, label="from IQ samples")
-        ax.set(yscale="log", xlabel="echo over the noise in 1 Hz, dB", xticks=levels)
-        ax.set(ylabel="median position error in mm")
+        ax.set(yscale="log", xlabel=r"echo over noise, $C/N_0$ (dB Hz)", xticks=levels)
+        ax.set(ylabel="median position error (mm)")
         ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         ax.legend()
         return figure

@@ -1,13 +1,18 @@
-"""Fig 6 of Mittermaier et al. (2016): the scene, the position errors and NIS, with ours."""
+"""Figures of the chapter on Fig 6: the scene, position errors and NIS, published and ours."""
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from .._hints import checked
+from ..model.radar_array import RadarArray
+from ..systems.mittermaier2016 import Figure6, PublishedFigure6
 from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, styled
 
 _AXES = ("x", "y", "z")
 
 
-def scene(result, published, array, run=0):
+@checked
+def scene(result: Figure6, published: PublishedFigure6, array: RadarArray, run: int = 0) -> Figure:
     """Draw the paper's 3-D scene: sensors, true path, estimates of one run, published estimates.
 
     Parameters
@@ -35,7 +40,7 @@ def scene(result, published, array, run=0):
         ring = np.linspace(0, 2 * np.pi, 100)
         radius = np.hypot(*array.positions[0, 1:])
         ax.plot(0 * ring, radius * np.cos(ring), radius * np.sin(ring), color=SENSOR, lw=0.8)
-        ax.set(xlabel="x in m", ylabel="y in m", zlabel="z in m")
+        ax.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
         ax.set(xlim=(0, 1), ylim=(-0.3, 0.3), zlim=(-0.3, 0.3))
         ax.set_box_aspect((1, 0.6, 0.6), zoom=0.95)
         # The paper's view: MATLAB counts azimuth from another axis than matplotlib does.
@@ -44,7 +49,8 @@ def scene(result, published, array, run=0):
         return figure
 
 
-def errors(result, published, run=0):
+@checked
+def errors(result: Figure6, published: PublishedFigure6, run: int = 0) -> Figure:
     """Draw the absolute position errors of one run, and the published ones, axis by axis.
 
     Parameters
@@ -65,13 +71,14 @@ def errors(result, published, run=0):
         for i, (ax, name) in enumerate(zip(axes, _AXES, strict=True)):
             ax.plot(published.time, 100 * published.error[:, i], color=PUBLISHED, label="published")
             ax.plot(result.time, 100 * result.error[run, :, i], color=OURS, label="ours, one run")
-            ax.set(ylabel=f"error of {name} in cm", ylim=(0, 16))
+            ax.set(ylabel=f"error of {name} (cm)", ylim=(0, 16))
         axes[0].legend(loc="upper right")
-        axes[-1].set(xlabel="time in s", xlim=(0, 1))
+        axes[-1].set(xlabel="time (s)", xlim=(0, 1))
         return figure
 
 
-def error_bands(result, published):
+@checked
+def error_bands(result: Figure6, published: PublishedFigure6) -> Figure:
     """Draw percentile bands of the absolute errors over all runs, and the published curves.
 
     Parameters
@@ -102,13 +109,16 @@ def error_bands(result, published):
                 published.time, 1000 * published.error[:, i], color=PUBLISHED, lw=1,
                 label="published run",
             )  # fmt: skip
-            ax.set(ylabel=f"error of {name} in mm", yscale="log", ylim=(0.01, 400))
+            ax.set(ylabel=f"error of {name} (mm)", yscale="log", ylim=(0.01, 400))
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
-        axes[-1].set(xlabel="time in s", xlim=(0, 1))
+        axes[-1].set(xlabel="time (s)", xlim=(0, 1))
         return figure
 
 
-def nis(result, published, interval, run=0):
+@checked
+def nis(
+    result: Figure6, published: PublishedFigure6, interval: tuple[float, ...], run: int = 0
+) -> Figure:
     """Draw NIS of one run above the published NIS, with the samples that were not used.
 
     Parameters
@@ -140,12 +150,15 @@ def nis(result, published, interval, run=0):
                 ax.axhline(bound, color=BOUND, ls="--", lw=1)
             ax.legend(loc="upper left", facecolor="white", frameon=True, framealpha=0.9)
             ax.set(ylabel="NIS", ylim=(0, 30))
-        axes[-1].set(xlabel="time in s", xlim=(0, 1))
+        axes[-1].set(xlabel="time (s)", xlim=(0, 1))
         return figure
 
 
-def nis_averages(results, published_average, interval):
-    """Draw how the time average of NIS is distributed over runs, for several filters.
+@checked
+def nis_averages(
+    results: dict[str, Figure6], published_average: dict[str, float], interval: tuple[float, ...]
+) -> Figure:
+    """Draw the distribution over runs of the time average of NIS, for several filters.
 
     Parameters
     ----------
@@ -172,13 +185,14 @@ def nis_averages(results, published_average, interval):
         ax.set(xscale="log", xlim=(5, 100), ylim=(0, 1))
         ax.set_xticks([5, 6, 8, 10, 20, 50, 100], ["5", "6", "8", "10", "20", "50", "100"])
         ax.set_xticks([], minor=True)
-        ax.set(xlabel="NIS averaged over one run", ylabel="share of runs below")
+        ax.set(xlabel="NIS averaged over one run", ylabel="fraction of runs below")
         ax.legend(loc="lower right")
         return figure
 
 
-def skipped_counts(result, published):
-    """Draw how many samples each run did not use: too good against too bad.
+@checked
+def skipped_counts(result: Figure6, published: PublishedFigure6) -> Figure:
+    """Draw the number of samples that each run did not use: too good against too bad.
 
     Parameters
     ----------
@@ -204,6 +218,6 @@ def skipped_counts(result, published):
         low, high = counts(published.nis, published.skipped)
         ax.plot(low, high, "D", color=PUBLISHED, ms=8, mec="white", label="published run")
         ax.set(yscale="log", ylim=(8, 1100))
-        ax.set(xlabel="samples below the gate", ylabel="samples above the gate")
+        ax.set(xlabel="number of samples below the gate", ylabel="number of samples above")
         ax.legend(loc="upper right")
         return figure

@@ -1,93 +1,39 @@
-"""The geometry of Doppler shifts: lines of sight, iso-Doppler cones, curves, sensitivities."""
+"""Figures of the chapter on geometry: lines of sight, iso-Doppler cones, sensitivities."""
+
+import json
+from collections.abc import Sequence
+from importlib.resources import files
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from .._hints import Array, checked
+from .._typing import ArrayLike
 from ..model.doppler import doppler_shift
-from .scene import HALO, LABEL, arrow, project, sensor_colors, spread
-from .style import BOUND, OURS, SENSOR, TRUTH, styled
+from ..model.iso_doppler import iso_doppler_directions
+from ..model.radar_array import RadarArray
+from .style import (
+    BOUND,
+    HALO,
+    LABEL,
+    OURS,
+    SENSOR,
+    TRUTH,
+    arrow,
+    doppler_lines,
+    project,
+    sensor_colors,
+    styled,
+)
+
+_TEMPLATE = files(__package__) / "demonstration.html"
 
 
-def iso_doppler_directions(array, x, around):
-    """Return directions from each sensor in which a target would show the same Doppler shift.
-
-    At a fixed velocity the shift depends only on the angle between the line of sight and the
-    velocity. So the positions with the shift of state `x` form a cone: apex at the sensor, axis
-    along the velocity, target of `x` on it.
-
-    Parameters
-    ----------
-    array : RadarArray
-        The N sensors.
-    x : array_like, shape (6,)
-        State in m and m/s, with a velocity other than zero.
-    around : array_like, shape (M,)
-        Angles around the axis of the cone in rad; 0 is the direction of the target itself.
-
-    Returns
-    -------
-    ndarray, shape (N, M, 3)
-        Unit vectors. A target at ``sensor + distance * direction`` with the velocity of `x` has
-        the Doppler shift of `x`, for any positive distance.
-    """
-    x, around = np.asarray(x, float), np.asarray(around, float)[:, None]
-    axis = x[3:] / np.linalg.norm(x[3:])
-    to_target = x[:3] - array.positions
-    to_target = to_target / np.linalg.norm(to_target, axis=1, keepdims=True)
-    along = (to_target @ axis)[:, None] * axis
-    across = to_target - along
-    directions = np.cos(around) * across[:, None] + np.sin(around) * np.cross(axis, across)[:, None]
-    return along[:, None] + directions
-
-
-def iso_doppler_cut(array, x, around):
-    """Return the curves in which a plane through the target cuts the iso-Doppler cones.
-
-    Parameters
-    ----------
-    array : RadarArray
-        The N sensors.
-    x : array_like, shape (6,)
-        State in m and m/s, moving towards or away from the plane x = 0.
-    around : array_like, shape (M,)
-        Angles around the axis of the cone in rad; 0 is the target itself.
-
-    Returns
-    -------
-    ndarray, shape (N, M, 3)
-        Positions in m whose first coordinate is that of the target; NaN where a line of the cone
-        never meets the plane.
-    """
-    directions = iso_doppler_directions(array, x, around)
-    distance = np.full(directions.shape[:2], np.nan)
-    ahead = x[0] - array.positions[:, :1]
-    np.divide(ahead, directions[..., 0], out=distance, where=ahead * directions[..., 0] > 0)
-    return array.positions[:, None] + distance[..., None] * directions
-
-
-def draw_doppler_curves(ax, time, shifts, names=None):
-    """Draw one Doppler curve for each sensor, labeled at its end."""
-    n = shifts.shape[-1]
-    names = [str(i + 1) for i in range(n)] if names is None else names
-    height = np.ptp(shifts) or 1.0
-    heights = spread(shifts[-1], 0.075 * height)
-    for curve, color, name, end in zip(shifts.T, sensor_colors(n), names, heights, strict=True):
-        ax.plot(time, curve, color=color, label=name)
-        ax.annotate(
-            name,
-            (time[-1], curve[-1]),
-            (time[-1] + 0.05 * np.ptp(time), end),
-            color=color,
-            va="center",
-            arrowprops={"arrowstyle": "-", "color": color, "lw": 0.6, "shrinkA": 0, "shrinkB": 0},
-        )
-    ax.set(xlabel="time (s)", ylabel="Doppler shift (Hz)")
-    ax.margins(x=0)
-
-
-def doppler_curves(time, shifts, names=None):
-    """Return a figure of the Doppler shift at each sensor over time.
+@checked
+def doppler_curves(time: Array, shifts: Array, names: Sequence[str] | None = None) -> Figure:
+    """Draw the Doppler shift at each sensor over time.
 
     Parameters
     ----------
@@ -100,14 +46,15 @@ def doppler_curves(time, shifts, names=None):
     """
     with styled(7, 3.6) as figure:
         ax = figure.subplots()
-        draw_doppler_curves(ax, time, shifts, names)
+        doppler_lines(ax, time, shifts, names)
         if shifts.min() < 0 < shifts.max():
             ax.axhline(0, color=BOUND, lw=0.8)
         return figure
 
 
-def two_sensors(array, x):
-    """Return the top view of a moving platform, and of the same scene from the platform.
+@checked
+def two_sensors(array: RadarArray, x: ArrayLike) -> Figure:
+    """Draw the top view of a moving platform, and of the same scene from the platform.
 
     Parameters
     ----------
@@ -149,8 +96,11 @@ def two_sensors(array, x):
         return figure
 
 
-def iso_doppler_lines(array, x, extent=(0.0, 1.0, -0.45, 0.45)):
-    """Return the iso-Doppler lines of one sensor, and the lines of all sensors through a target.
+@checked
+def iso_doppler_lines(
+    array: RadarArray, x: ArrayLike, extent: tuple[float, ...] = (0.0, 1.0, -0.45, 0.45)
+) -> Figure:
+    """Draw the iso-Doppler lines of one sensor, and the lines of all sensors through a target.
 
     Parameters
     ----------
@@ -199,14 +149,17 @@ def iso_doppler_lines(array, x, extent=(0.0, 1.0, -0.45, 0.45)):
 def _draw_lines(ax, array, x, colors):
     """Draw both branches of the iso-Doppler line of state `x` at each sensor."""
     for s, branches, color in zip(
-        array.positions, iso_doppler_directions(array, x, [0.0, np.pi]), colors, strict=True
+        array.positions, iso_doppler_directions(x, array, [0.0, np.pi]), colors, strict=True
     ):
         for branch, style in zip(branches, ("-", "--"), strict=True):
             ax.plot(*(s + np.outer([0, 5], branch))[:, :2].T, style, color=color, lw=1.3)
 
 
-def iso_doppler_cones(array, x, azimuth=-62.0, elevation=20.0):
-    """Return the iso-Doppler cones of all sensors in space, and their cut at the target's range.
+@checked
+def iso_doppler_cones(
+    array: RadarArray, x: ArrayLike, azimuth: float = -62.0, elevation: float = 20.0
+) -> Figure:
+    """Draw the iso-Doppler cones of all sensors in space, and their cut at the target's range.
 
     Parameters
     ----------
@@ -219,7 +172,7 @@ def iso_doppler_cones(array, x, azimuth=-62.0, elevation=20.0):
     """
     x = np.asarray(x, float)
     around = np.linspace(0, 2 * np.pi, 181)
-    cut = iso_doppler_cut(array, x, around)
+    cut = _cut(array, x, around)
 
     def view(points):
         return project(points, azimuth, elevation)
@@ -249,8 +202,21 @@ def iso_doppler_cones(array, x, azimuth=-62.0, elevation=20.0):
         return figure
 
 
-def sensitivities(time, jacobian, sigma_f):
-    """Return what one snapshot says about each coordinate, if it knew all the others.
+def _cut(array, x, around):
+    """Return the curves (N, M, 3) in which the plane of the target, across x, cuts the cones.
+
+    Where a line of a cone never meets the plane they are NaN.
+    """
+    directions = iso_doppler_directions(x, array, around)
+    distance = np.full(directions.shape[:2], np.nan)
+    ahead = x[0] - array.positions[:, :1]
+    np.divide(ahead, directions[..., 0], out=distance, where=ahead * directions[..., 0] > 0)
+    return array.positions[:, None] + distance[..., None] * directions
+
+
+@checked
+def sensitivities(time: Array, jacobian: Array, sigma_f: float) -> Figure:
+    """Draw the sensitivity of a snapshot to each coordinate, the others known.
 
     Parameters
     ----------
@@ -272,8 +238,34 @@ def sensitivities(time, jacobian, sigma_f):
                 ax.semilogy(time, per_cm[:, first + i], style, color=OURS, label=f"${name}$", lw=2)
             ax.axhline(sigma_f, color=BOUND, lw=1)
             ax.annotate(r"$\sigma_f$", (time[-1], sigma_f), (-8, 7), color=BOUND, **LABEL)
-            ax.set(xlabel="time (s)", title=f"{unit}, all sensors together")
+            ax.set(xlabel="time (s)", ylabel=f"sensitivity ({unit})", title="all sensors together")
             ax.legend()
             ax.margins(x=0)
-        axes[0].set_ylabel("sensitivity")
         return figure
+
+
+@checked
+def demonstration(javascript: str, array: RadarArray, x: ArrayLike) -> str:
+    """Draw a plane scene with sliders, its Doppler shifts and iso-Doppler lines, as HTML.
+
+    Parameters
+    ----------
+    javascript : str
+        Source of the function ``doppler_shift``, as `dopplerlib.derive.printers` prints it.
+    array : RadarArray
+        Sensors in the plane z = 0.
+    x : array_like, shape (6,)
+        State with which the scene starts, in m and m/s, in the plane z = 0.
+
+    Returns
+    -------
+    str
+        Loads nothing from elsewhere, and shows a sentence where JavaScript does not run.
+    """
+    settings = {
+        "sensors": array.positions.round(6).tolist(),
+        "dopplerPerSpeed": round(array.doppler_per_speed, 6),
+        "x": [float(value) for value in x],
+    }
+    text = _TEMPLATE.read_text(encoding="utf-8")
+    return text.replace("/*SETTINGS*/", json.dumps(settings)).replace("/*FORMULA*/", javascript)

@@ -1,13 +1,32 @@
-"""From IQ samples to a Doppler shift: the chain, the circle, the peak, the receiver's faults."""
+"""Figures of the chapter on IQ samples: the chain, spectra, errors of frequency estimators."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
+from .._hints import Array, checked
+from .._typing import ComplexArray
+from ..evaluation.intervals import ConfidenceInterval
+from ..systems.mittermaier2016 import Race
 from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, styled
 
+_STYLES = (
+    (OURS, "-", "o"),
+    (ORANGE, "--", "s"),
+    (PINK, "-.", "^"),
+    (SENSOR, ":", "D"),
+    ("#56B4E9", "-", "v"),
+    (TRUTH, "--", "x"),
+    ("#8C6D1F", "-.", "+"),
+    ("#7A3E9D", ":", "*"),
+)
 
-def chain(stages, rates, per_sensor):
-    """Draw the signal chain as boxes, and what goes from one to the next.
+
+@checked
+def chain(stages: Sequence[str], rates: Sequence[str], per_sensor: int) -> Figure:
+    """Draw the signal chain as boxes, with the rate between them.
 
     Parameters
     ----------
@@ -62,7 +81,8 @@ def chain(stages, rates, per_sensor):
         return figure
 
 
-def circle(time, x, turn):
+@checked
+def circle(time: Array, x: ComplexArray, turn: int) -> Figure:
     """Draw IQ samples as they run around a circle, and both parts over time.
 
     Parameters
@@ -90,15 +110,29 @@ def circle(time, x, turn):
             FancyArrowPatch(start, end, connectionstyle="arc3,rad=0.18", arrowstyle="-|>",
                             mutation_scale=13, color=TRUTH)
         )  # fmt: skip
-        plane.set(xlabel="I", ylabel="Q", aspect="equal", xlim=(-1.6, 1.6), ylim=(-1.6, 1.6))
+        plane.set(
+            xlabel="I (amplitudes)",
+            ylabel="Q (amplitudes)",
+            aspect="equal",
+            xlim=(-1.6, 1.6),
+            ylim=(-1.6, 1.6),
+        )
         trace.plot(1e3 * time, x.real, color=OURS, label="I")
         trace.plot(1e3 * time, x.imag, color=ORANGE, ls="--", label="Q")
-        trace.set(xlabel="time in ms", ylabel="in amplitudes of the echo", ylim=(-1.6, 2.3))
+        trace.set(xlabel="time (ms)", ylabel="I, Q (amplitudes of the echo)", ylim=(-1.6, 2.3))
         trace.legend(ncols=2, loc="upper right")
         return figure
 
 
-def peak(f, power, bins, bin_power, vertex, truth):
+@checked
+def peak(
+    f: Array,
+    power: Array,
+    bins: Array,
+    bin_power: Array,
+    vertex: float,
+    truth: float,
+) -> Figure:
     """Draw a spectrum, and its peak with the parabola through three bins.
 
     Parameters
@@ -125,8 +159,8 @@ def peak(f, power, bins, bin_power, vertex, truth):
         for ax in (wide, near):
             ax.plot(f, power, color=BOUND, lw=1.2, label="at any frequency")
             ax.plot(bins, bin_power, "o", color=OURS, ms=4, label="bins of the transform")
-            ax.set(xlabel="frequency in Hz")
-        wide.set(ylabel="magnitude of the spectrum", xlim=(f[0], f[-1]))
+            ax.set(xlabel="frequency (Hz)")
+        wide.set(ylabel="magnitude (amplitudes)", xlim=(f[0], f[-1]))
         g = np.linspace(bins[top] - 1.3 * width, bins[top] + 1.3 * width, 200)
         near.plot(g, parabola(g), color=ORANGE, ls="--", label="parabola through three")
         near.axvline(truth, color=TRUTH, lw=1, ls=":", label="truth")
@@ -137,7 +171,8 @@ def peak(f, power, bins, bin_power, vertex, truth):
         return figure
 
 
-def impairments(f, spectra, truth):
+@checked
+def impairments(f: Array, spectra: dict[str, Array], truth: float) -> Figure:
     """Draw spectra of the same record with faults of the receiver and without.
 
     Parameters
@@ -159,15 +194,18 @@ def impairments(f, spectra, truth):
         for (label, power), (color, ls) in zip(spectra.items(), styles, strict=False):
             ax.plot(f, 10 * np.log10(power), color=color, ls=ls, lw=1.2, label=label)
         low, high = -62, 10 * np.log10(max(power.max() for power in spectra.values()))
-        for place, text in ((0, "constant"), (truth, "echo"), (-truth, "image")):
+        for place, text in ((0, "DC offset"), (truth, "echo"), (-truth, "image")):
             ax.text(place, high + 3, text, ha="center", color=TRUTH)
             ax.axvline(place, color=BOUND, lw=0.8, ls=":", ymax=0.94)
-        ax.set(xlabel="frequency in Hz", ylabel="power in dB of the echo", ylim=(low, high + 9))
+        ax.set(
+            xlabel="frequency (Hz)", ylabel="power (dB relative to the echo)", ylim=(low, high + 9)
+        )
         figure.legend(loc="outside upper center", ncols=3)
         return figure
 
 
-def tags(time, shift, windows, center, end):
+@checked
+def tags(time: Array, shift: Array, windows: Array, center: Array, end: Array) -> Figure:
     """Draw a changing Doppler shift, and estimates tagged with the center and end of windows.
 
     Parameters
@@ -192,11 +230,238 @@ def tags(time, shift, windows, center, end):
             left.plot([a, b], [f, f], color=BOUND, lw=1)
         left.plot(middle, estimate, "o", color=OURS, ms=4, label="estimate, at the center")
         left.plot(windows[:, 1], estimate, "s", color=PINK, ms=4, label="the same, at the end")
-        left.set(xlabel="time in s", ylabel="Doppler shift in Hz")
+        left.set(xlabel="time (s)", ylabel="Doppler shift (Hz)")
         left.legend()
         right.axhline(0, color=BOUND, lw=0.8)
         right.plot(middle, center, "o-", color=OURS, ms=4, label="center")
         right.plot(windows[:, 1], end, "s--", color=PINK, ms=4, label="end")
-        right.set(xlabel="time in s", ylabel="error in Hz")
+        right.set(xlabel="time (s)", ylabel="error (Hz)")
         right.legend(title="tagged with the")
         return figure
+
+
+@checked
+def outliers(estimates: dict[str, Array], truth: float) -> Figure:
+    """Draw histograms of estimates, on a logarithmic axis, for several signal-to-noise ratios.
+
+    Parameters
+    ----------
+    estimates : dict of str to ndarray, shape (runs,)
+        Frequencies in Hz, by label.
+    truth : float
+        True frequency in Hz.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 2.8) as figure:
+        axes = figure.subplots(1, len(estimates), sharex=True, sharey=True)
+        largest = max(np.abs(f).max() for f in estimates.values())
+        edges = np.linspace(-largest, largest, 62) / 1e3
+        for ax, (label, f) in zip(axes, estimates.items(), strict=True):
+            ax.hist(f / 1e3, bins=edges, color=OURS, log=True)
+            ax.plot(truth / 1e3, 1.5 * len(f), "v", color=TRUTH, ms=5)
+            ax.set(title=label, xlabel="estimate (kHz)")
+        axes[0].set_ylabel("number of windows")
+        return figure
+
+
+@checked
+def threshold(race: Race, names: Sequence[str], predicted: Array, law: Array) -> Figure:
+    """Draw errors and outliers against the signal-to-noise ratio, with bound and law.
+
+    Parameters
+    ----------
+    race : Race
+        From `saved_race` of ``systems.mittermaier2016``.
+    names : sequence of str
+        Estimators that are drawn.
+    predicted : ndarray, shape (L,)
+        Root-mean-square error in Hz that bound and outliers give together.
+    law : ndarray, shape (L,)
+        Predicted fraction of outliers.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 6.2) as figure:
+        top, low = figure.subplots(2, 1, sharex=True, height_ratios=(1.5, 1))
+        top.plot(race.snr_db, race.bound, color=BOUND, lw=5, alpha=0.35, label="bound")
+        top.plot(race.snr_db, predicted, color=BOUND, lw=1.2, ls=":", label="bound with outliers")
+        low.plot(race.snr_db, law, color=BOUND, lw=1.2, ls=":")
+        for name, (color, ls, marker) in zip(names, _STYLES, strict=False):
+            look = {"color": color, "ls": ls, "marker": marker, "ms": 3.5, "lw": 1.2}
+            _bars(top, race.snr_db, race.ratio[name], race.bound, label=name, **look)
+            seen = [k for k, e in enumerate(race.outliers[name]) if e.value > 0]
+            _bars(low, race.snr_db[seen], [race.outliers[name][k] for k in seen], **look)
+        low.axhline(0.01, color=TRUTH, lw=0.8)
+        low.text(race.snr_db[-1], 0.012, "1 %", color=TRUTH, ha="right")
+        top.set(yscale="log", ylabel="RMS error (Hz)")
+        low.set(
+            yscale="log", ylim=(0.5 / race.windows, 1.5), ylabel="fraction of outliers",
+            xlabel="SNR of a sample (dB)",
+        )  # fmt: skip
+        top.legend(ncols=2)
+        return figure
+
+
+@checked
+def bias(fraction: Array, biases: dict[str, Array]) -> Figure:
+    """Draw the bias of estimators over where the tone lies between two bins.
+
+    Parameters
+    ----------
+    fraction : ndarray, shape (M,)
+        Distance from the nearest bin, in bins.
+    biases : dict of str to ndarray, shape (M,)
+        Absolute errors without noise, in bins, by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.4) as figure:
+        ax = figure.subplots()
+        for (label, error), (color, ls, marker) in zip(biases.items(), _STYLES, strict=False):
+            ax.plot(fraction, np.where(error > 1e-12, error, np.nan), color=color, ls=ls,
+                    marker=marker, ms=3.5, markevery=8, lw=1.2, label=label)  # fmt: skip
+        ax.set(
+            yscale="log", xlabel="distance from the nearest bin (bins)",
+            ylabel="bias (bins)",
+        )  # fmt: skip
+        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        return figure
+
+
+@checked
+def best_window(
+    T: Array,
+    errors: dict[str, Sequence[ConfidenceInterval]],
+    laws: dict[str, tuple[Array, Array, float]],
+    limit: float,
+) -> Figure:
+    """Draw errors against the length of the window, measured and predicted, for both tags.
+
+    Parameters
+    ----------
+    T : ndarray, shape (M,)
+        Lengths in s.
+    errors : dict of str to list of ConfidenceInterval, length M
+        Measured root-mean-square errors in Hz, by tag.
+    laws : dict of str to tuple (ndarray, shape (L,), ndarray, shape (L,), float)
+        For each tag lengths in s, predicted errors in Hz, and the best length in s.
+    limit : float
+        Standard deviation in Hz that is wanted.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.6) as figure:
+        ax = figure.subplots()
+        looks = zip(errors.items(), laws.values(), (PINK, OURS), ("s", "o"), ("--", "-"),
+                    strict=True)  # fmt: skip
+        for (tag, error), (length, law, best), color, marker, ls in looks:
+            ax.plot(1e3 * length, law, color=color, ls=ls, label=f"tag at the {tag}, law")
+            _bars(ax, 1e3 * T, error, color=color, ls="", marker=marker, ms=4, label="measured")
+            ax.plot(1e3 * best, np.interp(best, length, law), "*", color=color, ms=15, mec="white",
+                    label="best window")  # fmt: skip
+        ax.axhline(limit, color=TRUTH, lw=1, ls=":", label=f"{limit:g} Hz")
+        ax.set(
+            xscale="log", yscale="log", xlabel="length of the window (ms)",
+            ylabel="RMS error (Hz)",
+        )  # fmt: skip
+        ax.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"])
+        ax.tick_params(axis="x", which="minor", labelbottom=False)
+        ax.legend(ncols=2)
+        return figure
+
+
+@checked
+def overlap(tau: Array, law: Array, lag: Array, measured: Sequence[ConfidenceInterval]) -> Figure:
+    """Draw the correlation of the errors of overlapping windows.
+
+    Parameters
+    ----------
+    tau, law : ndarray, shape (M,)
+        Distance of the windows over their length, and the closed form.
+    lag : ndarray, shape (L,)
+        Distances at which it was measured.
+    measured : list of ConfidenceInterval, length L
+        The results.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.0) as figure:
+        ax = figure.subplots()
+        ax.axhline(0, color=BOUND, lw=0.8)
+        ax.plot(tau, law, color=BOUND, lw=4, alpha=0.5, label=r"$1 - 3\tau + 2\tau^3$")
+        _bars(ax, lag, measured, color=OURS, ls="", marker="o", ms=4, label="measured")
+        ax.set(
+            xlabel=r"relative distance of the windows $\tau$",
+            ylabel="correlation of the errors",
+        )  # fmt: skip
+        ax.legend()
+        return figure
+
+
+@checked
+def colored(
+    lag: Array,
+    autocorrelation: dict[str, Sequence[ConfidenceInterval]],
+    belief: dict[str, tuple[ConfidenceInterval, ConfidenceInterval]],
+) -> Figure:
+    """Draw the autocorrelation of innovations, and mean NIS and NEES.
+
+    Parameters
+    ----------
+    lag : ndarray, shape (L,)
+        Lags in steps.
+    autocorrelation : dict of str to list of ConfidenceInterval, length L
+        Of the innovations, by label.
+    belief : dict of str to tuple (ConfidenceInterval, ConfidenceInterval)
+        For the same labels, mean NIS and mean NEES.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    with styled(7.0, 3.2) as figure:
+        left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))
+        left.axhline(0, color=BOUND, lw=0.8)
+        for (label, value), (color, ls, marker) in zip(
+            autocorrelation.items(), _STYLES, strict=False
+        ):
+            look = {"color": color, "ls": ls, "marker": marker, "ms": 3.5, "lw": 1.2}
+            _bars(left, lag, value, label=label, **look)
+        left.set(xlabel="lag (steps)", ylabel="autocorrelation of the innovations")
+        left.legend()
+        right.axhline(1, color=BOUND, lw=4, alpha=0.4)
+        for i, ((nis, nees), (color, _, _)) in enumerate(
+            zip(belief.values(), _STYLES, strict=False)
+        ):
+            _bars(right, [i - 0.15], [nis], color=color, marker="o", ms=7, mfc="white", mew=2)
+            _bars(right, [i + 0.15], [nees], color=color, marker="D", ms=5)
+        right.plot([], [], "o", color=TRUTH, mfc="white", mew=2, label="mean NIS")
+        right.plot([], [], "D", color=TRUTH, label="mean NEES")
+        right.set(yscale="log", xticks=range(len(belief)), xlim=(-0.6, len(belief) - 0.4))
+        right.set_ylabel("relative mean: 1 is consistent")
+        names = ["\n".join(label.split(" ", 1)) for label in belief]
+        right.set_xticklabels(names, fontsize=8)
+        right.legend(loc="upper left")
+        values = [estimate.value for pair in belief.values() for estimate in pair]
+        right.set_ylim(0.6 * min(values), 2.5 * max(values))
+        return figure
+
+
+def _bars(ax, x, estimates, scale=1.0, **look):
+    """Draw estimates and their intervals."""
+    value, low, high = (
+        np.array([getattr(e, end) for e in estimates]) * scale for end in ("value", "low", "high")
+    )
+    (line,) = ax.plot(x, value, **look)
+    ax.vlines(x, low, high, color=line.get_color(), lw=1.2)

@@ -1,11 +1,15 @@
-"""What can be seen: ridges of the likelihood, the blind family, bounds over arrays, space, time."""
+"""Figures of the chapter on observability: likelihood, the blind family, bounds."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from .scene import HALO, LABEL, arrow, project
-from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, styled
+from .._hints import Array, checked
+from ..model.radar_array import RadarArray
+from .style import BOUND, HALO, LABEL, OURS, PUBLISHED, SENSOR, TRUTH, arrow, project, styled
 
 _STYLES = ("-", "--", ":", "-.")
 # None of them means published or sensor.
@@ -13,8 +17,15 @@ _COLORS = (OURS, "#CC79A7", "#E69F00", "#56B4E9")
 _DEPTHS = (OURS, "#74B3D9", "#C5E0F0")  # one, two and three sigma
 
 
-def likelihood_ridges(position, speed, misfits, truth, bounds=None):
-    """Return contours of the likelihood over distance and speed, one panel for each record.
+@checked
+def likelihood_ridges(
+    position: Array,
+    speed: Array,
+    misfits: dict[str, Array],
+    truth: tuple[float, ...],
+    bounds: dict[str, Array] | None = None,
+) -> Figure:
+    """Draw contours of the likelihood over distance and speed, one panel for each record.
 
     Parameters
     ----------
@@ -51,8 +62,15 @@ def likelihood_ridges(position, speed, misfits, truth, bounds=None):
         return figure
 
 
-def blind_family(array, x, family, azimuth=-68.0, elevation=22.0):
-    """Return the states that a ring cannot tell apart, in space and by their coordinates.
+@checked
+def blind_family(
+    array: RadarArray,
+    x: Array,
+    family: Array,
+    azimuth: float = -68.0,
+    elevation: float = 22.0,
+) -> Figure:
+    """Draw the states that a ring cannot tell apart, in space and by their coordinates.
 
     Parameters
     ----------
@@ -99,8 +117,11 @@ def blind_family(array, x, family, azimuth=-68.0, elevation=22.0):
         return figure
 
 
-def bounds_by_change(change, bounds, plain=None):
-    """Return how a bound falls with the size of a change of the array.
+@checked
+def bounds_by_change(
+    change: Array, bounds: dict[str, Array], plain: dict[str, float] | None = None
+) -> Figure:
+    """Draw the bound against the size of a change of the array.
 
     Parameters
     ----------
@@ -129,8 +150,15 @@ def bounds_by_change(change, bounds, plain=None):
         return figure
 
 
-def estimates(sets, x, others, bounds, axes):
-    """Return estimates beside the truth and the states that could be mistaken for it.
+@checked
+def estimates(
+    sets: dict[str, Array],
+    x: Array,
+    others: dict[str, Array],
+    bounds: dict[str, Array],
+    axes: Sequence[tuple[int, ...]],
+) -> Figure:
+    """Draw estimates beside the truth and the states that could be mistaken for it.
 
     Parameters
     ----------
@@ -175,8 +203,9 @@ def estimates(sets, x, others, bounds, axes):
         return figure
 
 
-def bound_maps(x, y, maps, arrays):
-    """Return maps of the bound on the position error over the plane z = 0.
+@checked
+def bound_maps(x: Array, y: Array, maps: dict[str, Array], arrays: Sequence[RadarArray]) -> Figure:
+    """Draw maps of the bound on the position error over the plane z = 0.
 
     Parameters
     ----------
@@ -214,8 +243,14 @@ def bound_maps(x, y, maps, arrays):
         return figure
 
 
-def bounds_over_time(time, bounds, law, marks=None):
-    """Return the bound on the position error against the length of the record.
+@checked
+def bounds_over_time(
+    time: Array,
+    bounds: dict[str, Array],
+    law: Array,
+    marks: dict[str, tuple[float, ...]] | None = None,
+) -> Figure:
+    """Draw the bound on the position error against the length of the record.
 
     Parameters
     ----------

@@ -1,12 +1,14 @@
-"""The figures of the tour: what is measured, and what comes of it."""
+"""Figures of the tour: one record of measurements, and the approach of the target."""
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from .scene import sensor_colors, spread
-from .style import OURS, TRUTH, styled
+from .._hints import Array, checked
+from .style import OURS, TRUTH, sensor_colors, spread, styled
 
 
-def record(time, z, shift):
+@checked
+def record(time: Array, z: Array, shift: Array) -> Figure:
     """Draw one record of Doppler measurements and the true shifts behind it.
 
     Parameters
@@ -33,14 +35,13 @@ def record(time, z, shift):
             )  # fmt: skip
             zoom.plot(1e3 * time[:50], z[:50, n], ".", color=color, ms=4)
             zoom.plot(1e3 * time[:50], shift[:50, n], color=color)
-        ax.set(
-            xlabel="time in s", ylabel="Doppler shift in Hz", title="whole record, without noise"
-        )
-        zoom.set(xlabel="time in ms", ylabel="Doppler shift in Hz", title="first 50 samples")
+        ax.set(xlabel="time (s)", ylabel="Doppler shift (Hz)", title="whole record, without noise")
+        zoom.set(xlabel="time (ms)", ylabel="Doppler shift (Hz)", title="first 50 samples")
         return figure
 
 
-def approach(time, truth, x, run=0):
+@checked
+def approach(time: Array, truth: Array, x: Array, run: int = 0) -> Figure:
     """Draw the estimated distance of one run, and the predicted time of impact of all runs.
 
     Parameters
@@ -65,14 +66,14 @@ def approach(time, truth, x, run=0):
         left, right = figure.subplots(1, 2)
         left.plot(time, truth[:, 0], color=TRUTH, ls="--", label="truth")
         left.plot(time, x[run, :, 0], color=OURS, label="estimate, one run")
-        left.set(xlabel="time in s", ylabel="distance x in m", ylim=(0, None))
+        left.set(xlabel="time (s)", ylabel="distance x (m)", ylim=(0, None))
         left.legend()
         right.fill_between(
             time, band[0], band[2], color=OURS, alpha=0.25, lw=0, label=f"95 % of {len(x)} runs"
         )
         right.plot(time, impact[run], color=OURS, label="one run")
         right.axhline(true_impact, color=TRUTH, ls="--", label="truth")
-        right.set(xlabel="time in s", ylabel="predicted time of impact in s")
+        right.set(xlabel="time (s)", ylabel="predicted time of impact (s)")
         right.set(ylim=(true_impact - 0.4, true_impact + 0.4))
         right.legend()
         return figure

@@ -55,6 +55,8 @@ def test_a_format_says_how_numbers_and_intervals_are_written():
     }
     table = Table(rows, tuple("wxyz"), (".1e", 2, "±.3f", ".3g"))
     assert table.cells[1] == ["a", "1.2e-01", "2.00 (1.50 to 2.75)", "0.500 ± 0.250", "1.23e+04"]
+    signed = Table({"a": ConfidenceInterval(0.5, 0.25, 0.75)}, digits="±+.2f")
+    assert signed.cells == [["a", "+0.50 ± 0.25"]]
     assert Table({"a": ConfidenceInterval(0.5, 0.25, 0.75)}, digits=".0%").cells == [
         ["a", "50% (25% to 75%)"]
     ]

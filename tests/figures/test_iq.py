@@ -3,7 +3,7 @@
 import numpy as np
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
-from dopplerlib.figures import iq, iq_study
+from dopplerlib.figures import iq
 from dopplerlib.systems.mittermaier2016 import Race
 from tests.drawn import lines
 
@@ -70,13 +70,13 @@ def test_estimates_stand_at_their_tags():
 
 
 def test_every_estimate_is_counted():
-    figure = iq_study.outliers({"a": np.array([1.0, 2, 2]), "b": np.array([-4.0, 0, 4])}, 2.0)
+    figure = iq.outliers({"a": np.array([1.0, 2, 2]), "b": np.array([-4.0, 0, 4])}, 2.0)
     for ax in figure.axes:
         assert sum(bar.get_height() for bar in ax.patches) == 3
 
 
 def test_every_estimator_has_a_look_of_its_own():
-    drawn = lines(iq_study.threshold(RACE, list(RACE.ratio), RACE.bound, RACE.bound).axes[0])
+    drawn = lines(iq.threshold(RACE, list(RACE.ratio), RACE.bound, RACE.bound).axes[0])
     assert {*RACE.ratio, "bound", "bound with outliers"} == set(drawn)
     looks = {
         (drawn[n].get_color(), drawn[n].get_linestyle(), drawn[n].get_marker()) for n in RACE.ratio
@@ -85,7 +85,7 @@ def test_every_estimator_has_a_look_of_its_own():
 
 
 def test_errors_are_drawn_in_hertz_with_their_intervals():
-    top, low = iq_study.threshold(RACE, ["a"], RACE.bound, RACE.bound).axes
+    top, low = iq.threshold(RACE, ["a"], RACE.bound, RACE.bound).axes
     np.testing.assert_allclose(lines(top)["a"].get_ydata(), [20, 4, 2])
     np.testing.assert_allclose(bars(top), [[10, 30], [2, 6], [1, 3]])
     # No outlier was seen at the last level.
@@ -93,21 +93,21 @@ def test_errors_are_drawn_in_hertz_with_their_intervals():
 
 
 def test_a_bias_of_zero_is_left_out():
-    figure = iq_study.bias(np.arange(3), {"a": np.array([1e-3, 0.0, 1e-3])})
+    figure = iq.bias(np.arange(3), {"a": np.array([1e-3, 0.0, 1e-3])})
     np.testing.assert_array_equal(lines(figure.axes[0])["a"].get_ydata(), [1e-3, np.nan, 1e-3])
 
 
 def test_the_best_window_lies_on_its_law():
     T = np.array([0.01, 0.02, 0.04])
     laws = {tag: (T, np.array([3.0, 1.0, 3.0]) * k, 0.02) for k, tag in ((1, "end"), (2, "center"))}
-    figure = iq_study.best_window(T, dict.fromkeys(laws, RATIO), laws, 0.4)
+    figure = iq.best_window(T, dict.fromkeys(laws, RATIO), laws, 0.4)
     stars = [line for line in figure.axes[0].lines if line.get_marker() == "*"]
     assert [tuple(star.get_data()) for star in stars] == [([20.0], [1.0]), ([20.0], [2.0])]
 
 
 def test_the_correlation_is_drawn_as_measured_and_as_derived():
     tau = np.linspace(0, 1, 5)
-    (ax,) = iq_study.overlap(tau, tau**2, tau[:3], SHARE).axes
+    (ax,) = iq.overlap(tau, tau**2, tau[:3], SHARE).axes
     np.testing.assert_array_equal(lines(ax)["measured"].get_xdata(), tau[:3])
     np.testing.assert_array_equal(lines(ax)["measured"].get_ydata(), [0.5, 0.1, 0])
     np.testing.assert_array_equal(bars(ax)[0], [0.3, 0.7])
@@ -115,7 +115,7 @@ def test_the_correlation_is_drawn_as_measured_and_as_derived():
 
 def test_each_filter_shows_its_nis_and_nees():
     belief = {"a": (ConfidenceInterval(1.0, 0.9, 1.1), ConfidenceInterval(7.0, 6.0, 8.0))}
-    left, right = iq_study.colored(np.arange(3), {"a": RATIO}, belief).axes
+    left, right = iq.colored(np.arange(3), {"a": RATIO}, belief).axes
     assert "a" in lines(left)
     heights = [line.get_ydata()[0] for line in right.lines if len(line.get_ydata()) == 1]
     assert heights == [1.0, 7.0]

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from dopplerlib import RadarArray, ring_family
 from dopplerlib.figures import observability as draw
-from dopplerlib.figures.scene import project
+from dopplerlib.figures.style import project
 from tests.drawn import check_figures, lines
 
 RING, LINE = RadarArray.ring(6, 0.2), RadarArray.linear(5, 0.4)
@@ -48,21 +48,8 @@ def figures():
     }
 
 
-NAMES = ["likelihood_ridges", "blind_family", "bounds_by_change", "estimates", "bound_maps",
-         "bounds_over_time"]  # fmt: skip
-
-
 def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
     check_figures(draw, figures)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_axis_says_its_unit(figures, name):
-    for ax in figures[name].axes:
-        if ax.axison:
-            labels = [ax.get_xlabel(), ax.get_ylabel()]
-            assert any(labels)  # of panels that share an axis one has its label
-            assert all(label.endswith(")") and " (" in label for label in labels if label)
 
 
 def test_the_contours_are_at_one_two_and_three_deviations(figures):

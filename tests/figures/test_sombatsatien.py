@@ -24,7 +24,8 @@ def test_a_repair_stands_at_the_median_and_the_central_95_percent_of_its_runs():
     # Of 201 runs the quantiles 0.025 and 0.975 are the 6th and the 196th.
     values = np.random.default_rng(2).permutation(np.arange(1, 202.0))
     figure = draw.repair_ranges(
-        {"none": {"error": values}, "all": {"error": values / 10}}, {"error": ("report", 50.0)}
+        {"none": {"error (m)": values}, "all": {"error (m)": values / 10}},
+        {"error (m)": ("report", 50.0)},
     )
     (ax,) = figure.axes
     ranges, middles = ax.get_lines()[:4:2], ax.get_lines()[1:4:2]

@@ -83,7 +83,7 @@ def figure_calls(dl, np):
     line, x0 = dl.RadarArray.linear(2, 0.2), [1.0, 0, 0, -1, 0, 0]
     return {
         "style": lambda: f.style.STYLE.read_text(encoding="utf-8"),
-        "demonstration": lambda: f.demonstration.doppler_demonstration("", line, x0),
+        "demonstration": lambda: f.geometry.demonstration("", line, x0),
         "figure6": lambda: f.figure6.errors(
             paper.figure6(1, rng=rng, keep=()), paper.published_figure6()
         ),

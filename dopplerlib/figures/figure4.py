@@ -1,14 +1,18 @@
-"""Errors of the start against the noise: beside the dots of Fig 4, against the bound."""
+"""Figures of the chapter on Fig 4: errors of the start against the noise."""
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from .._hints import Array, checked
+from ..systems.mittermaier2016 import Figure4, PublishedFigure4
 from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, styled
 
 _PARTS = (("position", "m"), ("velocity", "m/s"))
 
 
-def errors_by_noise(ours, published=None):
-    """Return mean errors against the variance of the noise, as in Fig 4 but on two log axes.
+@checked
+def errors_by_noise(ours: Figure4, published: PublishedFigure4 | None = None) -> Figure:
+    """Draw mean errors against the variance of the noise, as in Fig 4 but on two log axes.
 
     Parameters
     ----------
@@ -39,8 +43,11 @@ def errors_by_noise(ours, published=None):
         return figure
 
 
-def mean_and_median(results, bound, variance):
-    """Return errors divided by the deviation of the noise: flat where the problem is linear.
+@checked
+def mean_and_median(
+    results: dict[str, tuple[Array, Array]], bound: Array, variance: Array
+) -> Figure:
+    """Draw errors divided by the standard deviation of the noise: flat where the problem is linear.
 
     Parameters
     ----------
@@ -70,8 +77,9 @@ def mean_and_median(results, bound, variance):
         return figure
 
 
-def sequences(sets):
-    """Return what each sequence keeps: its mean error over the levels, position against velocity.
+@checked
+def sequences(sets: dict[str, tuple[Array, Array]]) -> Figure:
+    """Draw the mean error of each sequence over the levels, position against velocity.
 
     Parameters
     ----------

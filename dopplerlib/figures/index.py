@@ -1,18 +1,38 @@
-"""The figure on the first page: what is measured, and what comes out of it."""
+"""The figure of the first page: the measurements of one run, the tracks of many."""
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 
-from .geometry import draw_doppler_curves
-from .scene import HALO, project, sensor_colors
-from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, styled
+from .._hints import Array, checked
+from ..model.scenario import Scenario
+from .style import (
+    BOUND,
+    HALO,
+    OURS,
+    PUBLISHED,
+    SENSOR,
+    TRUTH,
+    doppler_lines,
+    project,
+    sensor_colors,
+    styled,
+)
 
 _FLOOR = -0.27  # m below the middle of the ring
 _GRID = "#DDDDDD"
 
 
-def hero(scenario, z, tracks, start, azimuth=-62.0, elevation=16.0):
-    """Return one record of Doppler shifts, the tracks of many, and their errors.
+@checked
+def hero(
+    scenario: Scenario,
+    z: Array,
+    tracks: Array,
+    start: Array,
+    azimuth: float = -62.0,
+    elevation: float = 16.0,
+) -> Figure:
+    """Draw one record of Doppler shifts, the tracks of many, and their errors.
 
     Parameters
     ----------
@@ -32,7 +52,7 @@ def hero(scenario, z, tracks, start, azimuth=-62.0, elevation=16.0):
         scene = figure.add_subplot(grid[0, :])
         _draw_scene(scene, scenario, tracks, start, lambda p: project(p, azimuth, elevation))
         curves = figure.add_subplot(grid[1, 0])
-        draw_doppler_curves(curves, scenario.time, z)
+        doppler_lines(curves, scenario.time, z)
         curves.set_title("Measured: six Doppler shifts (one run)")
         errors = figure.add_subplot(grid[1, 1])
         _draw_errors(errors, scenario, tracks)

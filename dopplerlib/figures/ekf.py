@@ -1,11 +1,22 @@
-"""What a Kalman filter believes, and how far it can be believed."""
+"""Figures of the chapter on the Kalman filter: bands, linearization, consistency, covariances."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
+from .._hints import Array, checked
 from .style import BOUND, OURS, TRUTH, VARIANTS, styled
 
 
-def bands(time, truth, x, deviation, measured=None):
+@checked
+def bands(
+    time: Array,
+    truth: Array,
+    x: Array,
+    deviation: Array,
+    measured: Array | None = None,
+) -> Figure:
     """Draw position and velocity on one axis: truth, estimate and two standard deviations.
 
     Parameters
@@ -36,12 +47,13 @@ def bands(time, truth, x, deviation, measured=None):
             )  # fmt: skip
             ax.plot(time, x[:, i], color=OURS, label="estimate")
             ax.plot(time, truth[:, i], color=TRUTH, ls="--", label="truth")
-            ax.set(xlabel="time in s", ylabel=("position in m", "velocity in m/s")[i])
+            ax.set(xlabel="time (s)", ylabel=("position (m)", "velocity (m/s)")[i])
             ax.legend(loc=("lower left", "upper right")[i])
         return figure
 
 
-def tangent(step, shift, line, sigma_f):
+@checked
+def tangent(step: Array, shift: Array, line: Array, sigma_f: float) -> Figure:
     """Draw the Doppler shift along a line through the state space, and its tangent.
 
     Parameters
@@ -63,19 +75,22 @@ def tangent(step, shift, line, sigma_f):
         left, right = figure.subplots(1, 2)
         left.plot(step, shift, color=TRUTH, label="Doppler shift, Eq 6")
         left.plot(step, line, color=OURS, ls="--", label="linearized, Eq 7")
-        left.set(ylabel="Hz")
+        left.set(ylabel="Doppler shift (Hz)")
         missed = np.abs(shift - line)
         right.plot(step, missed, color=OURS, label="their difference")
         right.axhline(sigma_f, color=BOUND, ls=":", label="noise, one standard deviation")
-        right.set(yscale="log", ylabel="Hz", ylim=(sigma_f / 100, 30 * missed.max()))
+        right.set(
+            yscale="log", ylabel="absolute value (Hz)", ylim=(sigma_f / 100, 30 * missed.max())
+        )
         for ax, place in ((left, "upper right"), (right, "upper center")):
-            ax.set_xlabel("standard deviations of the prior")
+            ax.set_xlabel("distance (standard deviations of the prior)")
             ax.legend(loc=place)
         return figure
 
 
-def second_order(time, ratios, ylabel):
-    """Draw what linearization neglects, over time, for several filters.
+@checked
+def second_order(time: Array, ratios: dict[str, Array], ylabel: str) -> Figure:
+    """Draw the terms that linearization neglects over time, for several filters.
 
     Parameters
     ----------
@@ -95,12 +110,18 @@ def second_order(time, ratios, ylabel):
         for (label, ratio), (color, ls) in zip(ratios.items(), VARIANTS, strict=False):
             ax.plot(time, ratio, color=color, ls=ls, label=label)
         ax.axhline(1, color=BOUND, ls=":", label="as large as the noise")
-        ax.set(xscale="log", yscale="log", xlabel="time in s", ylabel=ylabel)
+        ax.set(xscale="log", yscale="log", xlabel="time (s)", ylabel=ylabel)
         ax.legend()
         return figure
 
 
-def consistency(time, averages, intervals, titles):
+@checked
+def consistency(
+    time: Array,
+    averages: Sequence[dict[str, tuple[Array, Array]]],
+    intervals: tuple[tuple[float, float], tuple[float, float]],
+    titles: Sequence[str],
+) -> Figure:
     """Draw average NEES and NIS of many runs, for several targets side by side.
 
     Parameters
@@ -128,14 +149,15 @@ def consistency(time, averages, intervals, titles):
                 for (label, pair), (color, ls) in zip(filters.items(), VARIANTS, strict=False):
                     ax.plot(time, pair[row], color=color, ls=ls, lw=1.2, label=label)
                 ax.set_yscale("log")
-            axes[1, column].set_xlabel("time in s")
+            axes[1, column].set_xlabel("time (s)")
         axes[0, 0].set_ylabel("average NEES")
         axes[1, 0].set_ylabel("average NIS")
         axes[0, 0].legend()
         return figure
 
 
-def gap(time, deviations, gaps):
+@checked
+def gap(time: Array, deviations: dict[str, Array], gaps: Sequence[tuple[float, float]]) -> Figure:
     """Draw standard deviations over time for several records, and where sensors are missing.
 
     Parameters
@@ -153,23 +175,24 @@ def gap(time, deviations, gaps):
     """
     with styled(7.0, 3.4) as figure:
         axes = figure.subplots(1, 2)
-        for ax, i, name in zip(axes, (0, 3), ("$x$ in mm", "$v_x$ in mm/s"), strict=True):
+        for ax, i, name in zip(axes, (0, 3), ("$x$ (mm)", "$v_x$ (mm/s)"), strict=True):
             for start, end in gaps:
                 ax.axvspan(start, end, color=BOUND, alpha=0.2, lw=0)
             for (label, deviation), (color, ls) in zip(deviations.items(), VARIANTS, strict=False):
                 ax.plot(time, 1e3 * deviation[:, i], color=color, ls=ls, label=label)
-            ax.set(xlabel="time in s", ylabel=f"standard deviation of {name}", ylim=(0, None))
+            ax.set(xlabel="time (s)", ylabel=f"standard deviation of {name}", ylim=(0, None))
         axes[0].legend(loc="lower left")
         return figure
 
 
-def covariance_health(step, results):
-    """Draw how symmetric and how positive a computed covariance stays over a long run.
+@checked
+def covariance_health(step: Array, results: dict[str, dict[str, Array]]) -> Figure:
+    """Draw asymmetry and smallest eigenvalue of a computed covariance over a long run.
 
     Parameters
     ----------
     step : ndarray, shape (M,)
-        Numbers of the steps at which the matrices were looked at.
+        Array of the steps at which the matrices were looked at.
     results : dict of str to dict of str to ndarray, shape (up to M, 6, 6)
         For each title of a column and each label, covariances scaled to a unit diagonal. A series
         that is shorter than the others of its column ended because a variance became negative.
@@ -195,8 +218,8 @@ def covariance_health(step, results):
                     top.plot(at[-1], asymmetry[-1], "x", color=color, mew=2)
                     bottom.plot(at[-1], np.abs(least[-1]), "x", color=color, mew=2)
             top.set(yscale="log", ylim=(1e-16, 30))
-            bottom.set(yscale="log", ylim=(5e-8, 3), xlabel="step in thousands")
-        axes[0, 0].set_ylabel("asymmetry")
-        axes[1, 0].set_ylabel("smallest eigenvalue")
+            bottom.set(yscale="log", ylim=(5e-8, 3), xlabel="step (thousands)")
+        axes[0, 0].set_ylabel("relative asymmetry")
+        axes[1, 0].set_ylabel("relative least eigenvalue")
         axes[1, 0].legend(loc="upper right", ncols=2)
         return figure

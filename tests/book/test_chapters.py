@@ -1,0 +1,63 @@
+"""Cells show ideas: results are tables; and every chapter has the same sections."""
+
+import ast
+import re
+
+import nbformat
+import pytest
+
+from tools.notebooks import chapters
+
+MOST_PRINTING = 250  # lines in all chapters together: what prints is code, and a word here or there
+BOOK = {path.stem: nbformat.read(path, as_version=4).cells for path in chapters()}
+LATER = {"deviations"}  # headings still to be rewritten
+REWRITTEN = [name for name in BOOK if name not in LATER]
+WITH_EXERCISES = [name for name in REWRITTEN if any("## Exercises" in c.source for c in BOOK[name])]
+# Sections that had a heading of their own in each chapter.
+OTHER_WORDS = re.compile(
+    r"^#+ .*(what we get|beside what|reports, |in words$|What .* (is|says|does)\b)", re.M
+)
+
+
+def printing_lines(source):
+    """Return how many lines of code belong to statements that only print."""
+    return sum(
+        node.end_lineno - node.lineno + 1
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Call)
+        and getattr(node.value.func, "id", "") == "print"
+    )
+
+
+def prose(name):
+    return "\n\n".join(cell.source for cell in BOOK[name] if cell.cell_type == "markdown")
+
+
+def test_lines_of_print_are_counted_wherever_they_stand():
+    assert printing_lines("x = 1\nfor i in x:\n    print(\n        i\n    )\nprint(x)") == 4
+    assert printing_lines("printed = print\nf(print(1))") == 0
+
+
+def test_few_lines_of_the_book_only_print():
+    """It were 785 before there were tables as objects."""
+    counts = {
+        name: sum(printing_lines(c.source) for c in cells if c.cell_type == "code")
+        for name, cells in BOOK.items()
+    }
+    assert sum(counts.values()) <= MOST_PRINTING, {k: v for k, v in counts.items() if v}
+
+
+@pytest.mark.parametrize("name", WITH_EXERCISES)
+def test_three_key_takeaways_stand_before_the_exercises(name):
+    found = re.search(
+        r"^## Key takeaways\n\n((?:\* .*\n(?:  .*\n)*)+)\n*## Exercises$", prose(name), re.M
+    )
+    assert found
+    assert len(re.findall(r"^\* ", found[1], re.M)) == 3
+
+
+@pytest.mark.parametrize("name", REWRITTEN)
+def test_the_same_section_has_the_same_heading(name):
+    assert OTHER_WORDS.findall(prose(name)) == []
+    assert "{admonition} In practice" not in prose(name)

@@ -1,0 +1,57 @@
+"""Figures and chapters go one to one, and every drawing has the same form."""
+
+import inspect
+import re
+from importlib import import_module
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from tools.notebooks import ROOT, chapters
+
+CODE = {
+    path.stem: "\n".join(c.source for c in nbformat.read(path, 4).cells if c.cell_type == "code")
+    for path in chapters()
+}
+MODULES = sorted(
+    path.stem
+    for path in Path(ROOT, "dopplerlib", "figures").glob("[!_]*.py")
+    if path.stem != "style"
+)
+IMPORT = re.compile(r"from dopplerlib\.figures(?:\.(\w+))? import (.+)")
+
+
+def drawings(module):
+    """Return the public functions of a module of figures by name."""
+    return {
+        name: function
+        for name, function in vars(import_module(f"dopplerlib.figures.{module}")).items()
+        if inspect.isfunction(function)
+        and function.__module__.endswith(f".{module}")
+        and not name.startswith("_")
+    }
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_a_module_of_figures_has_its_chapter_that_calls_it_draw(module):
+    wanted = f"from dopplerlib.figures import {module} as draw"
+    assert CODE[module].count(wanted) == 1
+
+
+@pytest.mark.parametrize("chapter", CODE)
+def test_a_chapter_draws_with_the_module_of_its_name_or_borrows_a_function(chapter):
+    for module, names in IMPORT.findall(CODE[chapter]):
+        if module:
+            assert module != chapter and set(names.split(", ")) <= set(drawings(module))
+        else:
+            assert names == f"{chapter} as draw"
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_drawing_says_draw_has_hints_and_is_in_a_chapter(module):
+    for name, function in drawings(module).items():
+        assert function.__doc__.startswith("Draw "), name
+        parameters = inspect.signature(function).parameters
+        assert {*parameters, "return"} == set(function.__annotations__), name
+        assert any(re.search(rf"\b{name}\(", code) for code in CODE.values()), name

@@ -1,0 +1,33 @@
+"""What figures share: a view of space, labels that do not touch, colors of sensors."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from dopplerlib.figures import style
+
+
+def test_the_view_has_z_upwards_and_hides_the_direction_to_the_viewer():
+    assert_allclose(style.project([0, 0, 1], 30, 0), [0, 1], atol=1e-15)
+    assert_allclose(style.project([0, 1, 0], 0, 20), [1, 0], atol=1e-15)
+    to_viewer = [np.cos(1.1) * np.cos(0.5), np.cos(1.1) * np.sin(0.5), np.sin(1.1)]
+    assert_allclose(style.project(to_viewer, *np.rad2deg([0.5, 1.1])), [0, 0], atol=1e-15)
+
+
+@given(st.lists(st.floats(-1, 1), min_size=1, max_size=8), st.floats(0.01, 1))
+def test_labels_are_spread_until_none_is_closer_than_the_gap(values, gap):
+    moved = style.spread(values, gap)
+    assert (np.diff(np.sort(moved)) >= gap * (1 - 1e-6)).all()
+    assert (np.diff(moved[np.argsort(values, kind="stable")]) >= 0).all()
+    assert_allclose(np.mean(moved), np.mean(values), atol=1e-9)
+
+
+def test_labels_that_are_far_apart_stay():
+    assert style.spread([3, 1, 2], 0.5).tolist() == [3, 1, 2]
+
+
+@pytest.mark.parametrize("n", [1, 2, 5, 6])
+def test_sensors_have_colors_of_their_own(n):
+    assert len(set(style.sensor_colors(n))) == n
