@@ -24,6 +24,7 @@ from dopplerlib.estimation import (
 )
 from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 from dopplerlib.tracking import association, bilateration, fusion, gates, multi_target, pda
+from tests.fuzz.targets import example_calls
 
 K, n, m = 4, 2, 1
 F, Q = ncv_transition(0.5, dim=1), cwna_process_noise(0.5, 0.3, dim=1)
@@ -142,6 +143,15 @@ def public_functions():
                     and not value.__name__.startswith("_")
                 ]
     return found
+
+
+# What `ekf_update` is made of is tried through it.
+INSIDE = {extended_update.linearized, extended_update.wrapped}
+# A function without a call above is tried with the one that the example in its docstring makes.
+for _function in public_functions():
+    if _function not in CALLS and _function not in INSIDE:
+        if _calls := example_calls(_function.__module__.rpartition(".")[0], _function):
+            CALLS[_function] = _calls[0]
 
 
 def with_argument(names):

@@ -178,6 +178,11 @@ def trace(package, most=3):
     return {key: _smallest(found, most) for key, found in calls.items()}
 
 
+def example_calls(package, function):
+    """Return the calls of a function that the examples in `package` make, the shortest first."""
+    return trace(package).get(_key(function), [])
+
+
 def _all_modules():
     return [module for name in (*PACKAGES, "systems") for module in modules(f"dopplerlib.{name}")]
 
