@@ -22,6 +22,7 @@ from dopplerlib.estimation import (
     steady_state,
     variable_projection,
 )
+from dopplerlib.estimation.imm_records import ImmModel
 from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 from dopplerlib.tracking import association, bilateration, fusion, gates, multi_target, pda
 from tests.fuzz.targets import example_calls
@@ -37,6 +38,7 @@ box = [0.1, -1, 0, -2, -2, 0], [2, 1, 0, 2, 2, 0]
 two = {"x1": x, "P1": P, "x2": x + 0.1, "P2": P.T * 2}
 nonlinear = {"h": lambda x: x @ H.T, "H": lambda x: H}
 track = kf(z, F, Q, H, R, x, P)
+models, switch = [ImmModel(F, q * Q, H, R) for q in (1, 4)], [[0.9, 0.1], [0.2, 0.8]]
 
 
 def start(z):
@@ -60,8 +62,11 @@ CALLS = {
         "wrap": (0,), "gate": "upper", "gate_probability": 0.9,
     },
     imm.imm: {
-        "z": z, "F": [F, F], "Q": [Q, 4 * Q], "H": H, "R": R, "x0": x, "P0": P,
-        "transition": [[0.9, 0.1], [0.2, 0.8]], "mode0": [0.5, 0.5],
+        "z": z, "models": models, "x0": x, "P0": P, "transition": switch, "mode0": [0.5, 0.5],
+    },
+    imm.imm_start: {"models": models, "x0": x, "P0": P, "mode0": [0.5, 0.5]},
+    imm.imm_step: {
+        "z": z[0], "state": imm.imm_start(models, x, P), "models": models, "transition": switch,
     },
     smoother.rts_smooth: {"x": track.x, "P": track.P, "F": F, "Q": Q},
     steady_state.steady_state_gain: {"F": F, "Q": Q, "H": H, "R": R},
@@ -102,9 +107,11 @@ CALLS = {
 
 # Arguments by what they are. An argument of these names is of this kind in every function.
 COVARIANCES = ("P", "P0", "P1", "P2", "Q", "R", "R1", "R2")
-ITERABLES = ("wrap", "scans", "keep", "box")
+ITERABLES = ("wrap", "scans", "keep", "box", "models")
 BOOLEANS = ("accept", "in_plane")
-NOT_NUMBERS = ("points", "array", "start", "manager", "h", "gate", *ITERABLES, *BOOLEANS)
+NOT_NUMBERS = (
+    "points", "array", "start", "manager", "h", "gate", "state", *ITERABLES, *BOOLEANS
+)  # fmt: skip
 
 
 def call(function, **changed):
@@ -123,7 +130,7 @@ def results(value):
 
 
 # Modules of functions for the house, whose callers check.
-UNCHECKED = ("gaussian", "recursion", "sigma_points")
+UNCHECKED = ("gaussian", "models", "recursion", "sigma_points")
 
 
 def public_functions():

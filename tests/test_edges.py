@@ -12,6 +12,7 @@ from dopplerlib.estimation import (
     nonlinear_kalman,
     steady_state,
 )
+from dopplerlib.estimation.imm_records import ImmModel
 from dopplerlib.tracking import multi_target, pda
 from tests.estimates import (
     BOOLEANS,
@@ -241,7 +242,7 @@ def test_two_sensors_that_say_the_same_and_hardly_err_are_refused_by_name():
     functions = {
         linear_kalman.kf_update: changed | {"z": [1.0, 1.0]},
         linear_kalman.kf: changed | {"z": [[1.0, 1.0]] * 2},
-        imm.imm: changed | {"z": [[1.0, 1.0]] * 2},
+        imm.imm: {"z": [[1.0, 1.0]] * 2, "models": [ImmModel(np.eye(2), np.eye(2), same, R)] * 2},
         nonlinear_kalman.ekf_records: {"z": [[1.0, 1.0]] * 2, "R": R} | of_state(same),
         nonlinear_kalman.ukf: {"z": [[1.0, 1.0]] * 2, "R": R, "h": lambda x: x @ same},
         extended_update.ekf_innovation: {"z": [1.0, 1.0], "R": R} | of_state(same),
@@ -256,7 +257,7 @@ def test_two_sensors_that_say_the_same_and_hardly_err_are_refused_by_name():
     }
     # A settled filter is as sure as its measurements.
     takes = {f for f in EVERY if "R" in CALLS[f]} - {steady_state.steady_state_gain}
-    assert functions.keys() == takes
+    assert functions.keys() == takes | {imm.imm}
     for function, arguments in functions.items():
         message = "^R must make H P H' [+] R positive definite, got a smallest eigenvalue of"
         with pytest.raises(ValueError, match=message):

@@ -132,10 +132,12 @@ def imm_start(
     [0.9, 0.1]
     """
     models = _models(models)
-    first = (
-        x0 if all(model.to_common is None for model in models) else _each_model("x0", x0, models)[0]
-    )
-    batch = _checks.finite("x0", first, (models[0].n,)).shape[:-1]
+    if all(model.to_common is None for model in models):
+        first = x0 = _checks.finite("x0", x0, (models[0].n,))
+    else:
+        x0 = _each_model("x0", x0, models)
+        first = _checks.finite("x0", x0[0], (models[0].n,))
+    batch = first.shape[:-1]
     return _state(models, _start(models, x0, P0, mode0, batch))
 
 
@@ -240,7 +242,9 @@ def _start(models, x0, P0, mode0, batch):
     """Return the state of the cycle before the first measurement, checked."""
     M = len(models)
     if all(model.to_common is None for model in models):
-        x0, P0 = [x0] * M, [P0] * M
+        n = models[0].n
+        x0 = [_checks.finite("x0", x0, (n,))] * M
+        P0 = [_checks.covariance("P0", P0, n, definite=False)] * M
     else:
         x0, P0 = _each_model("x0", x0, models), _each_model("P0", P0, models)
     xs, Ps = [], []
