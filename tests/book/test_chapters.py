@@ -10,9 +10,7 @@ from tools.notebooks import chapters
 
 MOST_PRINTING = 250  # lines in all chapters together: what prints is code, and a word here or there
 BOOK = {path.stem: nbformat.read(path, as_version=4).cells for path in chapters()}
-LATER = {"deviations"}  # headings still to be rewritten
-REWRITTEN = [name for name in BOOK if name not in LATER]
-WITH_EXERCISES = [name for name in REWRITTEN if any("## Exercises" in c.source for c in BOOK[name])]
+WITH_EXERCISES = [name for name in BOOK if any("## Exercises" in c.source for c in BOOK[name])]
 # Sections that had a heading of their own in each chapter.
 OTHER_WORDS = re.compile(
     r"^#+ .*(what we get|beside what|reports, |in words$|What .* (is|says|does)\b)", re.M
@@ -57,7 +55,7 @@ def test_three_key_takeaways_stand_before_the_exercises(name):
     assert len(re.findall(r"^\* ", found[1], re.M)) == 3
 
 
-@pytest.mark.parametrize("name", REWRITTEN)
+@pytest.mark.parametrize("name", BOOK)
 def test_the_same_section_has_the_same_heading(name):
     assert OTHER_WORDS.findall(prose(name)) == []
     assert "{admonition} In practice" not in prose(name)
