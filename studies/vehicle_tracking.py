@@ -8,17 +8,18 @@ import math
 import multiprocessing
 from dataclasses import astuple, fields
 
-from dopplerlib.systems.macaveiu2013 import chain_study, paths
+from dopplerlib.systems import macaveiu2013 as paper
+from dopplerlib.systems.macaveiu2013.processing_study import RUNS, SEED, VARIANTS
 from tools.command import quiet_worker
 
 FILES = (".tracks.csv", ".detections.csv")
-PARAMETERS = {"seed": chain_study.SEED, "runs": chain_study.RUNS, "together": 5}
+PARAMETERS = {"seed": SEED, "runs": RUNS, "together": 5}
 
 
 def items():
     """Return the jobs: a path, and the first of the runs that are saved together."""
     firsts = range(0, PARAMETERS["runs"], PARAMETERS["together"])
-    return [(figure, first) for first in firsts for figure in paths()]
+    return [(figure, first) for first in firsts for figure in paper.vehicle_paths()]
 
 
 def rows(items):
@@ -30,16 +31,16 @@ def rows(items):
 def lines(job):
     """Return the figure, and the lines of both files for some runs of its path."""
     figure, first = job
-    truth = paths()[figure].truth
+    truth = paper.vehicle_paths()[figure].truth
     found, counted = [], []
     for run in range(first, first + PARAMETERS["together"]):
-        for number, variant in enumerate(chain_study.VARIANTS, start=1):
-            if variant not in chain_study.variants(figure):
+        for number, variant in enumerate(VARIANTS, start=1):
+            if variant not in paper.study_variants(figure):
                 continue
-            scans = chain_study.record(figure, run, variant)
-            values = (text(v) for v in astuple(chain_study.outcome(scans, truth, variant)))
+            scans = paper.study_record(figure, run, variant)
+            values = (text(v) for v in astuple(paper.study_outcome(scans, truth, variant)))
             found.append(",".join([str(figure), str(number), str(run), *values]))
-        values = map(str, astuple(chain_study.counts(chain_study.record(figure, run))))
+        values = map(str, astuple(paper.count_detections(paper.study_record(figure, run))))
         counted.append(",".join([str(figure), str(run), *values]))
     return figure, found, counted
 
@@ -54,8 +55,8 @@ def text(value):
 def contents(rows):
     """Return both tables, sorted by path and record."""
     heads = (
-        ["figure", "variant", "run", *(field.name for field in fields(chain_study.Outcome))],
-        ["figure", "run", *(field.name for field in fields(chain_study.Counts))],
+        ["figure", "variant", "run", *(field.name for field in fields(paper.SchemeOutcome))],
+        ["figure", "run", *(field.name for field in fields(paper.DetectionCounts))],
     )
     by_path = sorted(rows, key=lambda row: row[0])  # the sort is stable: runs stay in order
     for column, head in enumerate(heads, start=1):

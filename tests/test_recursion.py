@@ -15,9 +15,8 @@ STATE = {"P", "state"}
 # Loops other than that of `scan`, and why. The list may only become shorter.
 ELSEWHERE = {
     "estimation/recursion.py": "the loop",
-    "systems/asheim2015/in_the_plane.py": "two radars within a scan",
-    "systems/asheim2015/one_radar.py": "two components of a measurement, as scalars for speed",
-    "systems/asheim2015/many_detections.py": "tracks that begin and end",
+    "systems/asheim2015/cartesian_tracker.py": "two radars within a scan",
+    "systems/asheim2015/range_tracker.py": "two components of a measurement, as scalars for speed",
     "tracking/multi_target.py": "tracks that begin and end, scans that come from an iterator",
 }
 

@@ -22,14 +22,19 @@ def stubs():
         modules = sorted(m.name for m in iter_modules([str(path.parent)]) if m.name[0] != "_")
         lines = ["# Made by python -m tools.stubs; do not edit."]
         lines += [f"from . import {name} as {name}" for name in modules]
-        by_module = sorted(home.items(), key=lambda item: (item[1], item[0].islower(), item[0]))
+        by_module = sorted(home.items(), key=lambda item: (item[1], *_rank(item[0])))
         lines += [f"from .{module} import {name} as {name}" for name, module in by_module]
         if home:
-            names = "".join(f'    "{name}",\n' for name in package.__all__)
+            names = "".join(f'    "{name}",\n' for name in sorted(package.__all__, key=_rank))
             lines += ["", f"__all__ = [\n{names}]"]
             lines += ["__version__: str"] * hasattr(package, "__version__")
         found[path.with_suffix(".pyi")] = "\n".join(lines) + "\n"
     return found
+
+
+def _rank(name):
+    """Return the key of the order that the linter wants: constants, classes, functions."""
+    return not name.isupper(), name[0].islower(), name
 
 
 def _gives_names(path):

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._hints import Array, checked
+from ..tracking.multi_target import ManagedTrack
 from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, TRUTH, styled
 
 _LABEL = "SIMULATED"
@@ -117,7 +118,7 @@ def coasting(
 def managed(
     time: Array,
     detections: Array,
-    tracks: Sequence[dict],
+    tracks: Sequence[ManagedTrack],
     truth: Array,
     gap: tuple[float, float],
     alternative: Array,
@@ -130,7 +131,7 @@ def managed(
         Time of each scan in s.
     detections : array_like, shape (K, M)
         Ranges in m.
-    tracks : sequence of dict
+    tracks : sequence of ManagedTrack
         As `managed_tracks` returns them.
     truth : array_like, shape (K,)
         True range in m.
@@ -150,7 +151,7 @@ def managed(
         for i, (track, color) in enumerate(
             zip(tracks, (OURS, ORANGE, SENSOR, PINK) * len(tracks), strict=False)
         ):
-            left.plot(time[track["scan"]], track["x"][:, 0], color=color, marker=".", ms=4,
+            left.plot(time[track.scan], track.x[:, 0], color=color, marker=".", ms=4,
                       label="confirmed tracks" if i == 0 else None)  # fmt: skip
         right.plot(time, alternative, color=OURS, marker=".", ms=4, label="PDA")
         left.set(title=f"{_LABEL}: managed tracks", ylabel="range (m)")

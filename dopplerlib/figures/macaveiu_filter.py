@@ -8,28 +8,26 @@ from matplotlib.patches import Rectangle
 
 from .._hints import Array, checked
 from ..evaluation.intervals import ConfidenceInterval
-from ..systems.macaveiu2013.published import Settings
-from ..systems.macaveiu2013.regions import decided
-from ..systems.macaveiu2013.tracking import Runs
+from ..systems.macaveiu2013 import AutomotiveSettings, VehicleRuns, decided_claims
 from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, plain_log_ticks, styled
 
 _KMH = 3.6  # km/h for each m/s
 _SETTINGS = {
-    "sigma_p": r"position noise $\sigma_p$ (m)",
+    "sigma_x": r"position noise $\sigma_x$ (m)",
     "sigma_v": r"velocity noise $\sigma_v$ (m/s)",
     "w": "velocity step $w$ of the filter (m/s)",
 }
 
 
 @checked
-def three_panels(time: Array, runs: Runs, run: int = 0) -> Figure:
+def three_panels(time: Array, runs: VehicleRuns, run: int = 0) -> Figure:
     """Draw position and both speeds as in Figs 7 to 11: measurements, truth, estimate.
 
     Parameters
     ----------
     time : array_like, shape (K,)
         Time in s.
-    runs : Runs
+    runs : VehicleRuns
         From `track`; one of the runs is drawn, and the range of all for the speeds.
     run : int
         Which run.
@@ -64,7 +62,7 @@ def claim_map(
     rows: tuple[str, Sequence[float]],
     columns: tuple[str, Sequence[float]],
     shares: dict[str, Array],
-    settings: Settings,
+    settings: AutomotiveSettings,
 ) -> Figure:
     """Draw the percentage of runs in which each claim holds, over two settings.
 
@@ -74,7 +72,7 @@ def claim_map(
         Name and values of a setting, as `regions.claim_map` takes them.
     shares : dict of str to array_like, shape (3, rows, columns)
         Fraction of the runs for each claim, and the ends of its interval.
-    settings : Settings
+    settings : AutomotiveSettings
         Our choice, to be marked.
 
     Returns
@@ -89,7 +87,7 @@ def claim_map(
         axes = figure.subplots(2, 2, sharex=True, sharey=True)
         for ax, (title, share) in zip(axes.ravel(), shares.items(), strict=True):
             ax.imshow(share[0], origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=1)
-            verdict = decided(share)
+            verdict = decided_claims(share)
             for (i, j), value in np.ndenumerate(share[0]):
                 color = "black" if value > 0.6 else "white"
                 middle = f"{100 * value:.0f}"

@@ -46,13 +46,14 @@ def track_scans(
     Q: ArrayLike,
     h: Callable[..., Any],
     H: Callable[..., Any],
-    R: ArrayLike,
+    R: ArrayLike | Callable[..., Any],
     start: Callable[..., Any],
     manager: TrackManager,
     gate_probability: float = 0.999,
     assign: Callable[..., Any] = gnn_assign,
     wrap: Iterable[int] = (),
     new: Callable[..., Any] | None = None,
+    exclusive: bool = False,
 ) -> list[ManagedTrack]:
     """Track all targets in a sequence of scans.
 
@@ -65,8 +66,9 @@ def track_scans(
         Transition matrix; covariance of the process noise between two scans.
     h, H : callable
         Measurement function and its Jacobian, see `ekf_update`.
-    R : array_like, shape (m, m)
-        Covariance of the measurement noise.
+    R : array_like, shape (m, m), or callable
+        Covariance of the measurement noise. A function takes the states (tracks, n) of what is
+        measured and returns one for each, (tracks, m, m): for noise that depends on the range.
     start : callable
         Takes measurements (..., m), returns states (..., n) and covariances (..., n, n).
     manager : TrackManager
@@ -80,6 +82,9 @@ def track_scans(
     new : callable, optional
         Takes measurements (detections, m), returns booleans (detections,): which of them may start
         a track or belong to a tentative one; all if None.
+    exclusive : bool
+        Whether a detection inside the gate of a track, or of one that this scan has started, starts
+        none of its own: for bodies that give several echoes.
 
     Returns
     -------
@@ -89,10 +94,10 @@ def track_scans(
     Raises
     ------
     ValueError
-        If shapes do not fit, also those that `start`, `h`, `H`, `assign` and `new` return; a value
-        is not finite, also of an estimate; `Q` or `R` is not a covariance, or `R` so small that the
-        covariance of an innovation is singular to rounding; `manager` is no TrackManager; or
-        `gate_probability` is not between 0 and 1.
+        If shapes do not fit, also those that `start`, `h`, `H`, `R`, `assign` and `new` return; a
+        value is not finite, also of an estimate; `Q` or `R` is not a covariance, or `R` so small
+        that the covariance of an innovation is singular to rounding; `manager` is no TrackManager;
+        or `gate_probability` is not between 0 and 1.
 
     Notes
     -----
@@ -114,9 +119,12 @@ def track_scans(
     """
     from scipy.special import chdtri  # here: it takes longer to load than all the rest
 
-    R = _checks.matrix("R", R, (None, None))
-    m = R.shape[0]
-    R = _checks.covariance("R", R, m)
+    scans = tuple(_checks.iterable("scans", scans))
+    if callable(R):
+        m = max((np.shape(scan)[-1] for scan in scans if np.size(scan)), default=1)
+    else:
+        m = _checks.matrix("R", R, (None, None)).shape[0]
+        R = _checks.covariance("R", R, m)
     F = _checks.matrix("F", F, (None, None))
     n = F.shape[0]
     F = _checks.matrix("F", F, (n, n))
@@ -128,7 +136,19 @@ def track_scans(
         if value is not None or name != "new":
             _checks.function(name, value)
     done, alive = [], []
-    for number, scan in enumerate(_checks.iterable("scans", scans)):
+    exclusive = _checks.one_boolean("exclusive", exclusive)
+
+    def gated(x, P, z):
+        """Return innovations, gains, updated covariances, and NIS or infinity outside the gate."""
+        nu, J = linearized(x[:, None], z, h, H, wrap)
+        nu = _checks.each_run("h(x)", nu, (len(x), len(z)), (m,))
+        J = _checks.each_run("H(x)", J, (len(x), 1), (m, n))[:, 0]
+        noise = _checks.covariance("R(x)", _checks.called("R", R, x), m) if callable(R) else R
+        K, updated, S = gaussian.gain(P, J, noise)
+        cost = gaussian.quadratic_forms(nu, S)
+        return nu, K, updated, np.where(cost <= size, cost, np.inf)
+
+    for number, scan in enumerate(scans):
         z = _checks.detections(f"scans[{number}]", scan, m)
         z = _checks.one_matrix(f"scans[{number}]", z)
         places = np.flatnonzero(~np.isnan(z).any(axis=-1))
@@ -141,12 +161,7 @@ def track_scans(
             x, P = (np.stack([track[name][-1] for track in alive]) for name in ("x", "P"))
             x, P = gaussian.predict(x, P, F, Q)
             _checks.estimates("F, Q", x, P)
-            nu, J = linearized(x[:, None], z, h, H, wrap)
-            nu = _checks.each_run("h(x)", nu, (len(alive), len(z)), (m,))
-            J = _checks.each_run("H(x)", J, (len(alive), 1), (m, n))[:, 0]
-            K, updated, S = gaussian.gain(P, J, R)
-            cost = gaussian.quadratic_forms(nu, S)
-            cost = np.where(cost <= size, cost, np.inf)
+            nu, K, updated, cost = gated(x, P, z)
             first = np.array([track["confirmed"][-1] for track in alive])
             assigned = np.full(len(alive), -1)
             for some, open_to_them in ((first, True), (~first, may_start)):
@@ -161,8 +176,17 @@ def track_scans(
             for i, track in enumerate(alive):
                 place = places[assigned[i]] if seen[i] else -1
                 _extend(track, number, x[i], P[i], place, manager)
+            if exclusive:
+                free &= np.isinf(cost).all(axis=0)
         left = np.flatnonzero(may_start & free)
         x, P = _started(start, z[left], n) if len(left) else ((), ())
+        if exclusive and len(left) > 1:
+            *_, cost = gated(x, P, z[left])
+            kept = []
+            for i in range(len(left)):
+                if np.isinf(cost[kept, i]).all():
+                    kept.append(i)
+            left, x, P = left[kept], x[kept], P[kept]
         begun = [_begin(number, *state, manager) for state in zip(x, P, places[left], strict=True)]
         done += begun
         alive = [track for track in alive if track["life"].status != DELETED] + begun

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib.figures import asheim_real as draw
+from dopplerlib.tracking.multi_target import ManagedTrack
 from tests.drawn import check_figures, lines
 
 TIME = np.arange(50.0)
@@ -14,7 +15,8 @@ GAP = (25.0, 42.0)
 @pytest.fixture(scope="module")
 def figures():
     d, p = np.ones((50, 3)), np.ones((50, 2))
-    track = {"scan": np.arange(3), "x": np.ones((3, 2))}
+    state = np.ones((3, 2)), np.ones((3, 2, 2))
+    track = ManagedTrack(np.arange(3), *state, np.zeros(3, int), np.ones(3, bool))
     one = {"detections": d, "chosen": TIME, "filtered": TIME, "truth": TIME}
     return {
         "records": draw.records(TIME, {"a": one, "b": {"detections": d}}, (1.5, 4.5), GAP),

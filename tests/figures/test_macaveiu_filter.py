@@ -6,8 +6,6 @@ import pytest
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import macaveiu_filter as draw
 from dopplerlib.systems import macaveiu2013 as system
-from dopplerlib.systems.macaveiu2013.published import Path2D
-from dopplerlib.systems.macaveiu2013.tracking import Runs
 from tests.drawn import check_figures
 
 TIME = np.arange(6.0)
@@ -16,8 +14,10 @@ TIME = np.arange(6.0)
 @pytest.fixture
 def runs():
     truth = np.tile([1.0, 10.0, 2.0, -5.0], (6, 1))
-    path = Path2D(7, "straight", truth)
-    return Runs(path, truth[None] + 1, np.stack([truth, truth + 2]), np.eye(4), np.ones((2, 6)))
+    path = system.VehiclePath(7, "straight", truth)
+    return system.VehicleRuns(
+        path, truth[None] + 1, np.stack([truth, truth + 2]), np.eye(4), np.ones((2, 6))
+    )
 
 
 def test_three_panels_are_in_kilometers_per_hour(runs):
@@ -32,8 +32,8 @@ def test_three_panels_are_in_kilometers_per_hour(runs):
 def test_a_claim_map_tells_what_is_sure_and_what_is_not():
     share = np.array([[0.0, 0.5], [1.0, 0.9]])
     shares = np.stack([share, [[0.0, 0.4], [0.98, 0.85]], [[0.02, 0.6], [1.0, 0.94]]])
-    rows, columns = ("sigma_p", (0.5, 1.0)), ("w", (0.01, 0.1))
-    ours = system.settings().with_(sigma_p=0.5, w=0.1)
+    rows, columns = ("sigma_x", (0.5, 1.0)), ("w", (0.01, 0.1))
+    ours = system.automotive_settings().with_(sigma_x=0.5, w=0.1)
     figure = draw.claim_map(rows, columns, {str(i): shares for i in range(4)}, ours)
     ax = figure.axes[0]
     texts = [text.get_text() for text in ax.texts]
@@ -72,10 +72,10 @@ def test_averages_of_nis_and_nees_stand_in_their_panels():
 
 def test_every_figure_fits_the_page(runs):
     shares = {str(i): np.full((3, 2, 2), 0.5) for i in range(4)}
-    grid, s = ((0.5, 1.0), (0.01, 0.1)), system.settings().with_(sigma_p=0.5, w=0.1)
+    grid, s = ((0.5, 1.0), (0.01, 0.1)), system.automotive_settings().with_(sigma_x=0.5, w=0.1)
     figures = {
         "three_panels": draw.three_panels(TIME, runs),
-        "claim_map": draw.claim_map(("sigma_p", grid[0]), ("w", grid[1]), shares, s),
+        "claim_map": draw.claim_map(("sigma_x", grid[0]), ("w", grid[1]), shares, s),
         "lags": draw.lags(grid[1], np.ones((2, 2)), np.ones((2, 2)), {}),
         "nis_and_nees": draw.nis_and_nees(TIME, {"a": (TIME + 1,) * 2}, ((3, 5), (2, 6))),
     }

@@ -7,7 +7,7 @@ from importlib import import_module
 
 import pytest
 
-ROOMS = ("sombatsatien",)
+ROOMS = ("asheim2015", "macaveiu2013", "sombatsatien")
 
 
 def modules(room):

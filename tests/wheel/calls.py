@@ -37,8 +37,8 @@ def part_calls(dl, np):
         "chain": lambda: dl.chain.baseband.Baseband.from_samples(np.ones((6, 500)), 1e3, ring).fs,
         "evaluation": lambda: dl.chi2_interval(6),
         "replication": lambda: judged(dl, rng),
-        "systems, asheim2015": lambda: s.asheim2015.deviations([1.0, 2.0]),
-        "systems, macaveiu2013": lambda: s.macaveiu2013.chain_study.detections()[7]["target"],
+        "systems, asheim2015": lambda: s.asheim2015.noise_std([1.0, 2.0]),
+        "systems, macaveiu2013": lambda: s.macaveiu2013.saved_detections()[7]["target"],
         "systems, mittermaier2016": lambda: s.mittermaier2016.published_figure6().nis,
         "systems, scenario": lambda: s.mittermaier2016.scenario().truth,
         "systems, sombatsatien": lambda: s.sombatsatien.reported_record(),
@@ -67,10 +67,9 @@ def judged(dl, rng):
     read = dl.replication.documents.read_document
     for name in dl.replication.documents.documents():
         read(name)
-    found = dl.systems.asheim2015.claims.stand_in_evidence(rng=rng, runs=40)
-    told = [claim for claim in read("asheim2015").claims if claim.surrogate]
-    judgments = dl.replication.verdicts.judge_all(told, found)
-    return [judgment.verdict == judgment.claim.verdict for judgment in judgments]
+    found = dl.systems.asheim2015.evidence.evidence(rng=rng, runs=20)
+    judgments = dl.replication.verdicts.judge_all(read("asheim2015").claims, found)
+    return [one.verdict == one.claim.verdict for one in judgments if one.claim.surrogate]
 
 
 def figure_calls(dl, np):

@@ -1,16 +1,28 @@
 """How large the error of a position has to be: the area of the thesis, and the bound."""
 
+from typing import Annotated
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Count, Positive, checked, exactly, shaped
+from ..._typing import FloatArray
 from ...evaluation.range_bounds import range_crlb
 from ...tracking.bilateration import bilaterate
-from .published import deviations, scenario
-from .scene import radars
+from .noise import noise_std
+from .published import reported
+from .scene import radar_positions
 
 
-def error_area(position=None, snr_db=None, n_sigma=None, baseline=None, points=1):
-    """Return the corners of the area in which a triangulated position is expected (Fig 5.5).
+@checked
+def error_area(
+    position: Annotated[FloatArray, exactly(2)] | None = None,
+    snr_db: Annotated[float, _checks.decibels] | None = None,
+    n_sigma: Positive | None = None,
+    baseline: Positive | None = None,
+    points: Count = 1,
+) -> FloatArray:
+    """Return the corners of the area in which a bilaterated position is expected (Fig 5.5).
 
     Parameters
     ----------
@@ -34,25 +46,35 @@ def error_area(position=None, snr_db=None, n_sigma=None, baseline=None, points=1
     Raises
     ------
     ValueError
-        If a pair of rings does not meet in four points.
+        If an argument is not of the kind described, or a pair of rings does not meet in four
+        points.
+
+    Examples
+    --------
+    >>> error_area(snr_db=10.0).round(1).tolist()
+    [[-0.8, 3.9], [0.0, 4.1], [0.8, 3.9], [0.0, 3.9]]
     """
-    e = scenario()["error_area"]
-    p = np.array(e["position"]) if position is None else _checks.finite("position", position, (2,))
-    n = e["n_sigma"] if n_sigma is None else _checks.positive_number("n_sigma", n_sigma)
-    b = scenario()["radars"]["baseline"] if baseline is None else baseline
+    s = reported().scenario
+    p = s.error_area.position if position is None else position
+    n = s.error_area.n_sigma if n_sigma is None else n_sigma
+    b = s.radars.baseline if baseline is None else baseline
     d = np.hypot(p[0] + np.array([b / 2, -b / 2]), p[1])
     law = None if snr_db is None else lambda d: np.full(np.shape(d), float(snr_db))
-    half = n * deviations(d, law)[:, 0]
+    half = n * noise_std(d, law)[:, 0]
     corners = np.array([[-1, 1], [1, 1], [1, -1], [-1, -1], [-1, 1]])
-    at = np.arange(4 * _checks.whole_number("points", points)) / points
+    at = np.arange(4 * _checks.count("points", points, 10**6)) / points
     signs = np.stack([np.interp(at, range(5), c) for c in corners.T], axis=-1)
-    x, y, valid = bilaterate(*np.moveaxis(d + signs * half, -1, 0), b)
+    d1, d2 = np.moveaxis(d + signs * half, -1, 0)
+    x, y, valid = bilaterate(d1, d2, b)
     if not valid.all():
         raise ValueError(f"position must be one whose rings meet in four points, got {p.tolist()}")
     return np.stack([x, y], axis=-1)
 
 
-def one_scan_bound(p, baseline=None):
+@checked
+def one_scan_bound(
+    p: Annotated[FloatArray, shaped(2)], baseline: Positive | None = None
+) -> FloatArray:
     """Return the least covariance of a position from the two ranges of one scan.
 
     Parameters
@@ -66,7 +88,17 @@ def one_scan_bound(p, baseline=None):
     -------
     ndarray, shape (..., 2, 2)
         The bound of `range_crlb` with the noise that Eq 5.1 has at each range, in m^2.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described; see also `range_crlb`.
+
+    Examples
+    --------
+    >>> np.sqrt(np.diag(one_scan_bound([0.0, 4.0]))).round(2).tolist()
+    [0.4, 0.05]
     """
-    p, sensors = _checks.finite("p", p, (2,)), radars(baseline)
+    sensors = radar_positions(baseline)
     lines = p[..., None, :] - sensors
-    return range_crlb(p, sensors, deviations(np.hypot(lines[..., 0], lines[..., 1]))[..., 0])
+    return range_crlb(p, sensors, noise_std(np.hypot(lines[..., 0], lines[..., 1]))[..., 0])

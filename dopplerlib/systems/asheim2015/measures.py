@@ -1,16 +1,25 @@
 """Definitions behind the numbers: departure, usable range, error at a time."""
 
+from typing import Annotated
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Booleans, Count, Positive, Real, checked, exactly, shaped
+from ..._typing import FloatArray
 from ...evaluation.bootstrap import bootstrap_interval
+from ...evaluation.intervals import ConfidenceInterval
+
+Times = Annotated[FloatArray, exactly(None)]  # of scans; distances at them
+Errors = Annotated[FloatArray, exactly(None, None, check=_checks.measured)]
 
 # A position is of use as long as its root mean square error, averaged over a second, is below a
 # meter. The first seconds do not count: there the filter settles.
 LIMIT, AFTER, WINDOW = 1.0, 5.0, 1.0  # m, s, s
 
 
-def departure(updated, time, scans=10):
+@checked
+def departure_times(updated: Booleans, time: Times, scans: Count = 10) -> FloatArray:
     """Return when a track is left: the first run of scans in a row without an accepted detection.
 
     Parameters
@@ -26,10 +35,18 @@ def departure(updated, time, scans=10):
     -------
     ndarray, shape (...)
         Time of the first of these scans in s; infinite if there is no departure.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> float(departure_times([True, True, False, False], [0.0, 1.0, 2.0, 3.0], scans=2))
+    2.0
     """
-    updated = np.asarray(updated, bool)
-    time = _checks.finite("time", time)
-    scans = _checks.whole_number("scans", scans)
+    _checks.check_shape("updated", updated, time.shape)
     if updated.shape[-1] < scans:
         return np.full(updated.shape[:-1], np.inf)
     windows = np.lib.stride_tricks.sliding_window_view(~updated, scans, axis=-1)
@@ -37,7 +54,11 @@ def departure(updated, time, scans=10):
     return np.where(gone.any(axis=-1), time[np.argmax(gone, axis=-1)], np.inf)
 
 
-def distance_error(p, truth):
+@checked
+def position_errors(
+    p: Annotated[FloatArray, shaped(None, 2, check=_checks.measured)],
+    truth: Annotated[FloatArray, exactly(None, None)],
+) -> FloatArray:
     """Return the distance between estimated and true positions.
 
     Parameters
@@ -50,12 +71,25 @@ def distance_error(p, truth):
     Returns
     -------
     ndarray, shape (..., K)
-        In m.
+        In m; NaN where there is no estimate.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> position_errors([[3.0, 4.0], [1.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]]).tolist()
+    [5.0, 1.0]
     """
-    return np.hypot(*np.moveaxis(np.asarray(p) - np.asarray(truth)[:, :2], -1, 0))
+    _checks.check_shape("p", p, truth[:, :2].shape)
+    _checks.check_shape("truth[:, :2]", truth[:, :2], (2,))
+    return np.hypot(*np.moveaxis(p - truth[:, :2], -1, 0))
 
 
-def rmse(error, time, at, half_width=0.5):
+@checked
+def rmse(error: Errors, time: Times, at: Real, half_width: Positive = 0.5) -> float:
     """Return the root mean square error over runs and half a second before and after a time.
 
     Parameters
@@ -72,11 +106,24 @@ def rmse(error, time, at, half_width=0.5):
     Returns
     -------
     float
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described, or there is no error so near.
+
+    Examples
+    --------
+    >>> rmse([[0.3, 0.1], [0.4, 0.2]], [0.0, 2.0], 0.0).__round__(3)
+    0.354
     """
     return float(np.sqrt(np.nanmean(np.square(_near(error, time, at, half_width)))))
 
 
-def rmse_interval(error, time, at, half_width=0.5, *, rng):
+@checked
+def rmse_interval(
+    error: Errors, time: Times, at: Real, half_width: Positive = 0.5, *, rng: np.random.Generator
+) -> ConfidenceInterval:
     """Return `rmse` and its interval when runs are drawn with replacement.
 
     Parameters
@@ -84,17 +131,37 @@ def rmse_interval(error, time, at, half_width=0.5, *, rng):
     error, time, at, half_width
         See `rmse`.
     rng : numpy.random.Generator
-        Source of the resampling.
+        Source of the draws.
 
     Returns
     -------
     ConfidenceInterval
+
+    Raises
+    ------
+    ValueError
+        See `rmse`.
+
+    Examples
+    --------
+    >>> error, rng = [[0.3, 0.1], [0.4, 0.2]], np.random.default_rng(1)
+    >>> print(rmse_interval(error, [0.0, 2.0], 0.0, rng=rng))
+    0.354 (0.3 to 0.4)
     """
     sums = [part.sum(axis=1) for part in _squares(_near(error, time, at, half_width))]
     return bootstrap_interval(lambda s, n: np.sqrt(s / n), sums, rng=rng)
 
 
-def rmse_ratio(a, b, time, at, half_width=0.5, *, rng):
+@checked
+def rmse_ratio(
+    a: Errors,
+    b: Errors,
+    time: Times,
+    at: Real,
+    half_width: Positive = 0.5,
+    *,
+    rng: np.random.Generator,
+) -> ConfidenceInterval:
     """Return the root mean square error of one tracker over that of another on the same runs.
 
     Parameters
@@ -104,17 +171,33 @@ def rmse_ratio(a, b, time, at, half_width=0.5, *, rng):
     time, at, half_width
         See `rmse`.
     rng : numpy.random.Generator
-        Source of the resampling, in which both keep their runs together.
+        Source of the draws, in which both keep their runs together.
 
     Returns
     -------
     ConfidenceInterval
+
+    Raises
+    ------
+    ValueError
+        See `rmse`; or if an error of `b` is zero throughout.
+
+    Examples
+    --------
+    >>> error, rng = np.array([[0.3, 0.1], [0.4, 0.2]]), np.random.default_rng(1)
+    >>> rmse_ratio(2 * error, error, [0.0, 2.0], 0.0, rng=rng).value
+    2.0
     """
     sums = [part.sum(axis=1) for e in (a, b) for part in _squares(_near(e, time, at, half_width))]
     return bootstrap_interval(lambda sa, na, sb, nb: np.sqrt(sa / na / (sb / nb)), sums, rng=rng)
 
 
-def usable_range(error, time, distance):
+@checked
+def usable_range(
+    error: Annotated[FloatArray, shaped(None, None, check=_checks.measured)],
+    time: Times,
+    distance: Times,
+) -> FloatArray:
     """Return the distance from the origin at which the error of all runs exceeds a meter.
 
     Parameters
@@ -135,13 +218,22 @@ def usable_range(error, time, distance):
     Raises
     ------
     ValueError
-        If there are fewer than two scans.
+        If an argument is not of the kind described, or there are fewer than two scans.
+
+    Examples
+    --------
+    >>> time = np.arange(10.0)
+    >>> float(usable_range([time / 6], time, 2 * time))
+    14.0
     """
     squares, there = (part.mean(axis=-2) for part in _squares(error))
     return _first_above(squares, there, time, distance)
 
 
-def usable_interval(error, time, distance, *, rng):
+@checked
+def usable_interval(
+    error: Errors, time: Times, distance: Times, *, rng: np.random.Generator
+) -> ConfidenceInterval:
     """Return `usable_range` and its interval when runs are drawn with replacement.
 
     Parameters
@@ -149,19 +241,33 @@ def usable_interval(error, time, distance, *, rng):
     error, time, distance
         See `usable_range`.
     rng : numpy.random.Generator
-        Source of the resampling.
+        Source of the draws.
 
     Returns
     -------
     ConfidenceInterval
         In m; infinite where the error stays below the limit to the end.
+
+    Raises
+    ------
+    ValueError
+        See `usable_range`.
+
+    Examples
+    --------
+    >>> time, rng = np.arange(10.0), np.random.default_rng(1)
+    >>> usable_interval([time / 6, time / 6], time, 2 * time, rng=rng).value
+    14.0
     """
     return bootstrap_interval(
-        lambda *means: _first_above(*means, time, distance), _squares(error), rng=rng
+        lambda s, n: _first_above(s, n, time, distance), _squares(error), rng=rng
     )
 
 
-def usable_ratio(a, b, time, distance, *, rng):
+@checked
+def usable_ratio(
+    a: Errors, b: Errors, time: Times, distance: Times, *, rng: np.random.Generator
+) -> ConfidenceInterval:
     """Return the usable range of one tracker over that of another on the same runs.
 
     Parameters
@@ -171,26 +277,40 @@ def usable_ratio(a, b, time, distance, *, rng):
     time, distance
         See `usable_range`.
     rng : numpy.random.Generator
-        Source of the resampling, in which both keep their runs together.
+        Source of the draws, in which both keep their runs together.
 
     Returns
     -------
     ConfidenceInterval
         A range beyond the record counts as the last distance.
+
+    Raises
+    ------
+    ValueError
+        See `usable_range`; or if a usable range of `b` is zero.
+
+    Examples
+    --------
+    >>> time, rng = np.arange(10.0), np.random.default_rng(1)
+    >>> usable_ratio([time / 8], [time / 6], time, 2 * time, rng=rng).value.__round__(2)
+    1.29
     """
 
-    def ratio(*means):
-        over, under = (
-            np.minimum(_first_above(*pair, time, distance), distance[-1])
-            for pair in (means[:2], means[2:])
-        )
-        return over / under
+    def reach(squares, there):
+        return np.minimum(_first_above(squares, there, time, distance), distance[-1])
+
+    def ratio(a, some_a, b, some_b):
+        return reach(a, some_a) / reach(b, some_b)
 
     return bootstrap_interval(ratio, [*_squares(a), *_squares(b)], rng=rng)
 
 
 def _near(error, time, at, half_width):
-    return np.asarray(error)[:, np.abs(np.asarray(time) - at) <= half_width + 1e-9]
+    _checks.check_shape("error", error, time.shape)
+    near = error[:, np.abs(time - at) <= half_width + 1e-9]
+    if not np.isfinite(near).any():
+        raise ValueError(f"at must have errors within {half_width} s, got {at}")
+    return near
 
 
 def _squares(error):
@@ -201,9 +321,10 @@ def _squares(error):
 
 def _first_above(squares, there, time, distance):
     """Return the distance at which root mean squares (..., K) are first above the limit."""
-    time, distance = np.asarray(time), np.asarray(distance)
-    if len(time) < 2:
-        raise ValueError(f"time must have two scans or more, got {len(time)}")
+    if len(time) < 2 or time[0] >= time[1]:
+        raise ValueError(f"time must have two scans or more and rise, got {time.tolist()}")
+    _checks.check_shape("error", squares, time.shape)
+    _checks.check_shape("distance", distance, time.shape)
     # A scan without any estimate counts as unusable.
     mean = np.divide(squares, there, out=np.full(np.shape(squares), np.inf), where=there > 0)
     curve = np.sqrt(mean)

@@ -1,18 +1,26 @@
 """Tracks, what both radars measure of them, and the noise (Chapter 5)."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from ... import _checks
+from ..._hints import Count, Positive, Probability, Real, Runs, checked, exactly
 from ..._records import record
+from ..._typing import FloatArray
 from ...model.range_rate import range_rate
 from ...model.ranging_noise import detection_probability
-from .published import deviations, scenario, snr
+from .noise import Law, noise_std, snr
+from .published import reported
+
+Times = Annotated[FloatArray, exactly(None)]
 
 
+@checked
 @record
-class Records:
+class RadarRecords:
     """Simulated records of both radars.
 
     Attributes
@@ -29,21 +37,45 @@ class Records:
         Measured range in m and range rate in m/s; NaN where nothing was detected.
     offset : float
         How much later than the first radar the second one measures, in s.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described, or their lengths do not agree.
+
+    Examples
+    --------
+    >>> records = simulate_radars(2, rng=np.random.default_rng(1), duration=1.0)
+    >>> records.first(1).until(0.5).with_offset(0.05).z.shape
+    (1, 2, 6, 2)
+    >>> records.baseline, round(float(records.distance[-1]), 2)
+    (1.0, 0.14)
     """
 
-    time: np.ndarray
-    truth: np.ndarray
-    sensors: np.ndarray
-    ranges: np.ndarray
-    z: np.ndarray
-    offset: float
+    time: Times
+    truth: Annotated[FloatArray, exactly(None, 4)]
+    sensors: Annotated[FloatArray, exactly(2, 2)]
+    ranges: Annotated[FloatArray, exactly(2, None, 2)]
+    z: Annotated[FloatArray, exactly(None, 2, None, 2, check=_checks.measured)]
+    offset: Real
 
-    def first(self, runs):
+    def __post_init__(self):
+        """Check that the fields have one number of scans."""
+        K = len(self.time)
+        for name, length in (
+            ("truth", len(self.truth)), ("ranges", self.ranges.shape[1]), ("z", self.z.shape[2])
+        ):  # fmt: skip
+            if length != K:
+                raise ValueError(f"{name} must have {K} scans as time has, got {length}")
+
+    @checked
+    def first(self, runs: Count) -> "RadarRecords":
         """Return the records of the first `runs` runs."""
         return replace(self, z=self.z[:runs])
 
-    def until(self, end):
-        """Return the records up to the time `end` in s."""
+    @checked
+    def until(self, end: Real) -> "RadarRecords":
+        """Return the records up to the time `end` in s, which must not be before the first."""
         scans = int(np.sum(self.time <= end + 1e-9))
         return replace(
             self,
@@ -53,22 +85,23 @@ class Records:
             z=self.z[:, :, :scans],
         )
 
-    def with_offset(self, offset):
+    def with_offset(self, offset: Real) -> "RadarRecords":
         """Return the records as they look to whoever believes in another offset, in s."""
         return replace(self, offset=offset)
 
     @property
-    def baseline(self):
+    def baseline(self) -> float:
         """Distance between the radars in m."""
         return float(self.sensors[1, 0] - self.sensors[0, 0])
 
     @property
-    def distance(self):
+    def distance(self) -> FloatArray:
         """True distance from the origin at each scan in m, shape (K,)."""
         return np.hypot(self.truth[:, 0], self.truth[:, 1])
 
 
-def radars(baseline=None):
+@checked
+def radar_positions(baseline: Positive | None = None) -> FloatArray:
     """Return the positions of the two radars on the x axis.
 
     Parameters
@@ -79,13 +112,23 @@ def radars(baseline=None):
     Returns
     -------
     ndarray, shape (2, 2)
+
+    Raises
+    ------
+    ValueError
+        If `baseline` is not positive.
+
+    Examples
+    --------
+    >>> radar_positions(0.6).tolist()
+    [[-0.3, 0.0], [0.3, 0.0]]
     """
-    b = scenario()["radars"]["baseline"] if baseline is None else baseline
-    b = _checks.positive_number("baseline", b)
+    b = reported().scenario.radars.baseline if baseline is None else baseline
     return np.array([[-b / 2, 0.0], [b / 2, 0.0]])
 
 
-def straight_track(time):
+@checked
+def straight_track(time: Times) -> FloatArray:
     """Return the states on the straight track of Fig 5.1(a).
 
     Parameters
@@ -96,14 +139,23 @@ def straight_track(time):
     Returns
     -------
     ndarray, shape (K, 4)
+
+    Raises
+    ------
+    ValueError
+        If a time is not finite or beyond 1e60.
+
+    Examples
+    --------
+    >>> straight_track([0.0, 10.0]).round(1).tolist()
+    [[0.0, 0.0, 0.1, 0.1], [1.0, 1.0, 0.1, 0.1]]
     """
-    t = _checks.finite("time", time)[:, None]
-    s = scenario()["tracks"]
-    p, v = np.array(s["start"]), np.array(s["velocity"])
-    return np.hstack([p + t * v, np.broadcast_to(v, (len(t), 2))])
+    s, t = reported().scenario.tracks, time[:, None]
+    return np.hstack([s.start + t * s.velocity, np.broadcast_to(s.velocity, (len(t), 2))])
 
 
-def maneuver_track(time):
+@checked
+def maneuver_track(time: Times) -> FloatArray:
     """Return the states on the track with a turn of 120 degrees, Fig 5.1(b).
 
     The turn has a constant rate and is counter-clockwise, as the code has it.
@@ -116,13 +168,22 @@ def maneuver_track(time):
     Returns
     -------
     ndarray, shape (K, 4)
+
+    Raises
+    ------
+    ValueError
+        If a time is not finite or beyond 1e60.
+
+    Examples
+    --------
+    >>> maneuver_track([30.0])[0, 2:].round(2).tolist()
+    [-0.14, 0.04]
     """
-    t = _checks.finite("time", time)
-    s = scenario()["tracks"]
-    v = np.array(s["velocity"])
+    t, s = time, reported().scenario.tracks
+    v = s.velocity
     speed, heading = np.hypot(*v), np.arctan2(v[1], v[0])
-    begin, end = s["turn_start"], s["turn_stop"]
-    rate = np.deg2rad(s["turn"]) / (end - begin)
+    begin, end = s.turn_start, s.turn_stop
+    rate = np.deg2rad(s.turn) / (end - begin)
     inside = np.clip(t - begin, 0, end - begin)
     angle = heading + rate * inside
     straight = np.minimum(t, begin)[:, None] * v
@@ -132,11 +193,12 @@ def maneuver_track(time):
         * np.stack([np.sin(angle) - np.sin(heading), np.cos(heading) - np.cos(angle)], axis=-1)
     )
     direction = speed * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    p = np.array(s["start"]) + straight + arc + np.maximum(t - end, 0)[:, None] * direction
+    p = s.start + straight + arc + np.maximum(t - end, 0)[:, None] * direction
     return np.hstack([p, direction])
 
 
-def scan_times(T=None, duration=None):
+@checked
+def scan_times(T: Positive | None = None, duration: Positive | None = None) -> FloatArray:
     """Return the times of all scans of the simulation.
 
     Parameters
@@ -153,30 +215,39 @@ def scan_times(T=None, duration=None):
     Raises
     ------
     ValueError
-        If the record is shorter than one interval.
+        If the record is shorter than one interval, or a million times as long.
+
+    Examples
+    --------
+    >>> scan_times(0.5, 1.0).tolist()
+    [0.0, 0.5, 1.0]
     """
-    s = scenario()["tracks"]
-    T = s["T"] if T is None else _checks.positive_number("T", T)
-    duration = s["duration"] if duration is None else _checks.positive_number("duration", duration)
-    if duration < T:
-        raise ValueError(f"duration must be at least the interval of {T} s, got {duration}")
+    s = reported().scenario.tracks
+    T = s.T if T is None else T
+    duration = s.duration if duration is None else duration
+    if not T <= duration <= 1e6 * T:
+        raise ValueError(
+            f"duration must be at least the interval of {T} s, and a million intervals at most, "
+            f"got {duration}"
+        )
     return np.arange(round(duration / T) + 1) * T
 
 
-def simulate(
-    runs,
+@checked
+def simulate_radars(
+    runs: Runs,
     *,
-    rng,
-    track=straight_track,
-    T=None,
-    duration=None,
-    baseline=None,
-    law=None,
-    rate="difference",
-    correlated=1,
-    offset=0.0,
-    false_alarm=None,
-):
+    rng: np.random.Generator,
+    track: Callable[..., Any] = straight_track,
+    T: Positive | None = None,
+    duration: Positive | None = None,
+    baseline: Positive | None = None,
+    law: Law | None = None,
+    rate: Literal["difference", "exact"] = "difference",
+    correlated: Runs = 1,
+    offset: Real = 0.0,
+    false_alarm: Probability | None = None,
+) -> RadarRecords:
     """Return records of both radars, as Appendix A simulates them.
 
     Parameters
@@ -204,35 +275,37 @@ def simulate(
     offset : float
         How much later than the first radar the second one measures, in s.
     false_alarm : float, optional
-        If given, a scan has a detection only with the chance that a threshold with this probability
-        of a false alarm leaves at the signal-to-noise ratio there, and is NaN otherwise. If None,
-        as in the thesis, each scan has one, however weak the echo.
+        If given, a scan has a detection only with the probability that a threshold with this
+        probability of a false alarm leaves at the signal-to-noise ratio there, and is NaN
+        otherwise. If None, as in the thesis, each scan has one, however weak the echo.
 
     Returns
     -------
-    Records
+    RadarRecords
 
     Raises
     ------
     ValueError
-        If an argument is not of the kind described.
+        If an argument is not of the kind described, or the records would have more than ten million
+        scans.
+
+    Examples
+    --------
+    >>> simulate_radars(2, rng=np.random.default_rng(1), duration=1.0).z.shape
+    (2, 2, 11, 2)
     """
-    runs = _checks.whole_number("runs", runs)
-    _checks.generator("rng", rng)
-    _checks.one_of("rate", rate, ("difference", "exact"))
-    correlated = _checks.whole_number("correlated", correlated)
-    offset = _checks.one_number("offset", offset)
-    time, sensors = scan_times(T, duration), radars(baseline)
+    time, sensors = scan_times(T, duration), radar_positions(baseline)
+    _checks.count("runs times scans", runs * (len(time) + correlated), 10**7)
     step = time[1] - time[0]
     ranges = []
     for n, delay in enumerate((0.0, offset)):
-        d = range_rate(track(time + delay), sensors[n : n + 1])[:, 0]
+        d = range_rate(_checks.called("track", track, time + delay), sensors[n : n + 1])[:, 0]
         if rate == "difference":
             forward = np.diff(d[:, 0]) / step
             d[:, 1] = np.append(forward, forward[-1])
         ranges.append(d)
     ranges = np.stack(ranges)
-    sigma = deviations(ranges[..., 0], law)
+    sigma = noise_std(ranges[..., 0], law)
     shape = (2, len(time) + correlated - 1, 2)
     noise = np.stack([child.standard_normal(shape) for child in rng.spawn(runs)])
     if correlated > 1:
@@ -243,10 +316,17 @@ def simulate(
         chance = detection_probability((law or snr)(ranges[..., 0]), false_alarm)
         seen = np.stack([child.random(chance.shape) < chance for child in rng.spawn(runs)])
         z = np.where(seen[..., None], z, np.nan)
-    return Records(time, track(time), sensors, ranges, z, offset)
+    return RadarRecords(time, track(time), sensors, ranges, z, offset)
 
 
-def noisy_positions(track, T=None, *, rng, same=False):
+@checked
+def noisy_positions(
+    track: Callable[..., Any],
+    T: Positive | None = None,
+    *,
+    rng: np.random.Generator,
+    same: bool = False,
+) -> tuple[FloatArray, FloatArray]:
     """Return a track with the noise of Eq 5.7, whose size depends on the distance from the origin.
 
     Parameters
@@ -264,8 +344,19 @@ def noisy_positions(track, T=None, *, rng, same=False):
     -------
     truth, noisy : ndarray, shape (K, 2)
         In m.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> truth, noisy = noisy_positions(straight_track, 5.0, rng=np.random.default_rng(1))
+    >>> noisy.shape
+    (11, 2)
     """
-    _checks.generator("rng", rng)
-    p = track(scan_times(T))[:, :2]
-    sigma = deviations(np.hypot(p[:, 0], p[:, 1]))[:, :1]
+    states = _checks.called("track", track, scan_times(T))
+    p = _checks.moderate("track(time)", states, (4,))[:, :2]
+    sigma = noise_std(np.hypot(p[:, 0], p[:, 1]))[:, :1]
     return p, p + sigma * rng.standard_normal((len(p), 1 if same else 2))

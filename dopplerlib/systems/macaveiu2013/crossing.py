@@ -1,18 +1,24 @@
 """Two pedestrians whose paths cross: nearest neighbor against the Hungarian algorithm."""
 
+from typing import Annotated, Literal
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Booleans, Real, Runs, checked, exactly
 from ..._records import record
+from ..._typing import FloatArray
 from ...estimation import recursion
 from ...model.motion import ncv_transition
-from .published import settings
-from .tracking import gain_sequence, measure
+from .linear_filter import gain_sequence, measure_vehicle
+from .settings import AutomotiveSettings, automotive_settings
 
-WALK = 1.4  # m/s; ours, as everything here: the document names the algorithm and shows nothing
+_SPEED = 1.4  # m/s; ours, as everything here: the document names the algorithm and shows nothing
 RULES = ("each its nearest", "greedy", "Hungarian")
+Pair = Annotated[FloatArray, exactly(2, None, 4)]  # states of two targets at all samples
 
 
+@checked
 @record
 class Crossing:
     """How two tracks came through a crossing.
@@ -29,42 +35,62 @@ class Crossing:
         Both tracks follow one target at the end.
     """
 
-    truth: np.ndarray
-    x: np.ndarray
-    swapped: np.ndarray
-    lost: np.ndarray
+    truth: Pair
+    x: Annotated[FloatArray, exactly(None, 2, None, 4)]
+    swapped: Booleans
+    lost: Booleans
 
 
-def paths(angle, s=None):
+@checked
+def crossing_paths(angle: Real, s: AutomotiveSettings | None = None) -> FloatArray:
     """Return two straight paths that meet half way, 10 m ahead of the radar.
 
     Parameters
     ----------
     angle : float
         Angle between the headings in rad.
-    s : Settings, optional
+    s : AutomotiveSettings, optional
         Those of the data file if None.
 
     Returns
     -------
     ndarray, shape (2, K, 4)
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> crossing_paths(0.5).shape
+    (2, 500, 4)
     """
-    s = settings() if s is None else s
+    s = automotive_settings() if s is None else s
     t = s.time - s.time.mean()
     truth = np.empty((2, len(t), 4))
     for one, sign in zip(truth, (1, -1), strict=True):
-        v = WALK * np.array([np.cos(angle / 2), sign * np.sin(angle / 2)])
+        v = _SPEED * np.array([np.cos(angle / 2), sign * np.sin(angle / 2)])
         one[:, 0], one[:, 1] = v[0] * t, v[0]
         one[:, 2], one[:, 3] = 10 + v[1] * t, v[1]
     return truth
 
 
-def follow(truth, rule, runs, *, rng, velocity=True, s=None):
+@checked
+def track_crossing(
+    truth: Pair,
+    rule: Literal["each its nearest", "greedy", "Hungarian"],
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    velocity: bool = True,
+    s: AutomotiveSettings | None = None,
+) -> Crossing:
     """Track two targets whose detections come without names.
 
     Parameters
     ----------
-    truth : ndarray, shape (2, K, 4)
+    truth : array_like, shape (2, K, 4)
         True states.
     rule : {"each its nearest", "greedy", "Hungarian"}
         Each track takes the detection with the smallest NIS, the other one's too; the best pair
@@ -75,7 +101,7 @@ def follow(truth, rule, runs, *, rng, velocity=True, s=None):
         Source of the noise.
     velocity : bool
         Whether the association looks at the velocities, or at the positions alone.
-    s : Settings, optional
+    s : AutomotiveSettings, optional
         Those of the data file if None.
 
     Returns
@@ -85,18 +111,23 @@ def follow(truth, rule, runs, *, rng, velocity=True, s=None):
     Raises
     ------
     ValueError
-        If `rule` is unknown, `runs` is not a positive whole number, or `rng` is not a generator.
+        If an argument is not of the kind described.
 
     Notes
     -----
     Both targets are detected in every scan and have the same covariance, so that its inverse weighs
     all pairs alike, and there are but two ways to make pairs.
+
+    Examples
+    --------
+    >>> truth = crossing_paths(0.5)[:, :20]
+    >>> track_crossing(truth, "Hungarian", 3, rng=np.random.default_rng(1)).x.shape
+    (3, 2, 20, 4)
     """
-    _checks.one_of("rule", rule, RULES)
-    s = settings() if s is None else s
+    s = automotive_settings() if s is None else s
     children = zip(truth, rng.spawn(2), strict=True)
-    z = np.stack([measure(one, runs, rng=child, s=s) for one, child in children], axis=1)
-    F, gains = ncv_transition(s.T), gain_sequence(s)
+    z = np.stack([measure_vehicle(one, runs, rng=child, s=s) for one, child in children], axis=1)
+    F, gains = ncv_transition(s.T), gain_sequence(s.with_(samples=truth.shape[1]))
 
     def step(k, state):
         state = state @ F.T
@@ -112,6 +143,7 @@ def follow(truth, rule, runs, *, rng, velocity=True, s=None):
 
     begin = z[:, :, 0]
     (x,) = recursion.scan(step, begin, range(1, z.shape[2]), axis=2, first=(begin,))
+    _checks.estimates("truth, s", x)
     off = np.linalg.norm(x[:, :, None, -1, ::2] - truth[:, -1, ::2], axis=-1)
     nearest = off.argmin(axis=-1)
     swapped = (nearest == [1, 0]).all(axis=1)

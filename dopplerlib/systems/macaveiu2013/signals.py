@@ -1,8 +1,12 @@
 """What this book shows to the waveforms of Section II: all of it is ours."""
 
+from typing import Annotated
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import checked
+from ..._typing import ComplexArray
 from .published import KMH
 
 SLOPES = (1.0, -1.0, 0.6, -0.3)  # of several chirps, in units of the bandwidth over T
@@ -10,7 +14,13 @@ CAR = np.stack([np.linspace(18, 22, 5), np.full(5, 10 * KMH)], axis=-1)  # five 
 PEDESTRIAN = np.array([[12.0, v] for v in (-1.5, -0.7, 0.2, 0.8, 1.5)])  # torso, arms and legs
 
 
-def noisy(signal, snr_db, *, rng):
+@checked
+def noisy_echoes(
+    signal: Annotated[ComplexArray, _checks.finite_complex],
+    snr_db: float,
+    *,
+    rng: np.random.Generator,
+) -> ComplexArray:
     """Return a signal with white complex noise.
 
     Parameters
@@ -30,9 +40,12 @@ def noisy(signal, snr_db, *, rng):
     ------
     ValueError
         If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> noisy_echoes([1.0, 1j], 60.0, rng=np.random.default_rng(1)).round(2).tolist()
+    [(1+0j), 1j]
     """
-    signal = _checks.finite_complex("signal", signal)
-    _checks.generator("rng", rng)
     deviation = np.sqrt(0.5 * 10 ** (-_checks.one_number("snr_db", snr_db, _checks.decibels) / 10))
     shape = (2, *signal.shape)
     return signal + deviation * np.tensordot([1, 1j], rng.standard_normal(shape), 1)

@@ -13,7 +13,7 @@ def test_a_departure_is_the_first_long_run_of_misses():
     updated[0, 5:14] = False  # nine are not enough
     updated[0, 18:28] = False
     updated[1, 20:] = False
-    np.testing.assert_allclose(thesis.departure(updated, time), [1.8, 2.0, np.inf])
+    np.testing.assert_allclose(thesis.departure_times(updated, time), [1.8, 2.0, np.inf])
 
 
 def test_the_usable_range_is_where_the_average_of_all_runs_passes_the_limit():
@@ -95,7 +95,7 @@ def test_the_range_of_each_run_is_that_of_the_run_alone(errors):
 
 
 def test_one_scan_has_no_range_and_a_record_no_less_than_one_interval():
-    with pytest.raises(ValueError, match="time must have two scans or more, got 1"):
+    with pytest.raises(ValueError, match="time must have two scans or more and rise"):
         thesis.usable_range([[1.0]], [0.0], [0.0])
     with pytest.raises(ValueError, match=r"duration must be at least the interval of 0\.1 s"):
         thesis.scan_times(duration=0.04)

@@ -33,16 +33,16 @@ def test_the_velocity_is_the_derivative_of_the_position():
 
 
 def test_radar_1_is_farther_than_six_meters_when_it_is_left():
-    q = thesis.quoted()["departure"]
-    p = thesis.straight_track([q["R1_time"], *q["R1_times"]])[:, :2]
-    d = np.hypot(*(p - thesis.radars()[0]).T)
-    assert (d > q["R1_distance"] + 0.4).all()
+    q = thesis.reported().quoted.departure
+    p = thesis.straight_track([q.R1_time, *q.R1_times])[:, :2]
+    d = np.hypot(*(p - thesis.radar_positions()[0]).T)
+    assert (d > q.R1_distance + 0.4).all()
 
 
 def test_the_noise_has_the_deviations_of_the_law():
     """200 runs in 501 scans: the mean square is 1 within 5 of its deviations, by chance 1e-6."""
-    records = thesis.simulate(200, rng=np.random.default_rng(1))
-    unit = (records.z - records.ranges) / thesis.deviations(records.ranges[..., 0])
+    records = thesis.simulate_radars(200, rng=np.random.default_rng(1))
+    unit = (records.z - records.ranges) / thesis.noise_std(records.ranges[..., 0])
     for part in np.moveaxis(unit, -1, 0):
         assert abs(np.mean(part**2) - 1) < 5 * np.sqrt(2 / part.size)
         assert abs(np.mean(part[..., 1:] * part[..., :-1])) < 5 / np.sqrt(part[..., 1:].size)
@@ -50,21 +50,21 @@ def test_the_noise_has_the_deviations_of_the_law():
 
 def test_overlapping_integrations_correlate_by_what_they_share():
     """One scan apart nine tenths, ten scans apart nothing: within 0.02, some 7 deviations."""
-    records = thesis.simulate(200, rng=np.random.default_rng(2), correlated=10)
-    unit = (records.z - records.ranges) / thesis.deviations(records.ranges[..., 0])
+    records = thesis.simulate_radars(200, rng=np.random.default_rng(2), correlated=10)
+    unit = (records.z - records.ranges) / thesis.noise_std(records.ranges[..., 0])
     for lag in (0, 1, 5, 10):
         product = unit[..., lag:, :] * unit[..., : unit.shape[-2] - lag, :]
         assert abs(product.mean() - (1 - lag / 10)) < 0.02
 
 
 def test_a_run_is_the_same_whether_few_or_many_are_asked_for():
-    few, many = (thesis.simulate(n, rng=np.random.default_rng(3)).z for n in (2, 5))
+    few, many = (thesis.simulate_radars(n, rng=np.random.default_rng(3)).z for n in (2, 5))
     np.testing.assert_array_equal(few, many[:2])
 
 
 def test_the_rate_of_the_code_is_a_difference_and_the_exact_one_is_not():
-    code = thesis.simulate(1, rng=np.random.default_rng(4)).ranges
-    exact = thesis.simulate(1, rng=np.random.default_rng(4), rate="exact").ranges
+    code = thesis.simulate_radars(1, rng=np.random.default_rng(4)).ranges
+    exact = thesis.simulate_radars(1, rng=np.random.default_rng(4), rate="exact").ranges
     np.testing.assert_allclose(code[:, :-1, 1], np.diff(code[..., 0]) / 0.1, atol=1e-12)
     np.testing.assert_array_equal(code[..., 0], exact[..., 0])
     # Half a scan of the acceleration 0.02 m/s^2 that a passing target has half a meter away.
@@ -72,15 +72,17 @@ def test_the_rate_of_the_code_is_a_difference_and_the_exact_one_is_not():
 
 
 def test_a_second_radar_that_is_late_sees_a_later_target():
-    late = thesis.simulate(1, rng=np.random.default_rng(5), offset=1.0, rate="exact").ranges
-    sync = thesis.simulate(1, rng=np.random.default_rng(5), rate="exact").ranges
+    late = thesis.simulate_radars(1, rng=np.random.default_rng(5), offset=1.0, rate="exact").ranges
+    sync = thesis.simulate_radars(1, rng=np.random.default_rng(5), rate="exact").ranges
     np.testing.assert_allclose(late[0], sync[0])
     np.testing.assert_allclose(late[1, :-10], sync[1, 10:], atol=1e-12)
 
 
 def test_another_law_is_used():
-    far = thesis.simulate(1, rng=np.random.default_rng(6), law=lambda d: fourth_power_snr(d, 42.0))
-    near = thesis.simulate(1, rng=np.random.default_rng(6))
+    far = thesis.simulate_radars(
+        1, rng=np.random.default_rng(6), law=lambda d: fourth_power_snr(d, 42.0)
+    )
+    near = thesis.simulate_radars(1, rng=np.random.default_rng(6))
     assert (
         np.abs(far.z - far.ranges)[..., -1, 0].max()
         < np.abs(near.z - near.ranges)[..., -1, 0].max() / 10
@@ -93,23 +95,23 @@ def test_the_same_number_for_both_axes_makes_a_line():
     )
     np.testing.assert_allclose(*(noisy - p).T)
     p, noisy = thesis.noisy_positions(thesis.straight_track, rng=np.random.default_rng(7))
-    assert abs(np.corrcoef((noisy - p).T / thesis.deviations(np.hypot(*p.T))[:, 0])[0, 1]) < 0.3
+    assert abs(np.corrcoef((noisy - p).T / thesis.noise_std(np.hypot(*p.T))[:, 0])[0, 1]) < 0.3
 
 
 def test_the_tracks_end_where_the_thesis_says_up_to_sign_and_order():
-    q, s = thesis.quoted()["track"], thesis.scenario()["tracks"]
+    q, s = thesis.reported().quoted.track, thesis.reported().scenario.tracks
     straight, turned = (
-        track([s["duration"]])[0, :2] for track in (thesis.straight_track, thesis.maneuver_track)
+        track([s.duration])[0, :2] for track in (thesis.straight_track, thesis.maneuver_track)
     )
-    np.testing.assert_allclose(straight, q["straight_end"])
-    assert np.hypot(*straight) == pytest.approx(q["straight_end_distance"], abs=0.005)
-    assert np.abs(turned - q["maneuver_end"]).max() > 6
-    np.testing.assert_allclose(np.abs(turned[::-1]), q["maneuver_end"], atol=0.11)
+    np.testing.assert_allclose(straight, q.straight_end)
+    assert np.hypot(*straight) == pytest.approx(q.straight_end_distance, abs=0.005)
+    assert np.abs(turned - q.maneuver_end).max() > 6
+    np.testing.assert_allclose(np.abs(turned[::-1]), q.maneuver_end, atol=0.11)
     # The printed distance is that of the printed place.
-    assert np.hypot(*q["maneuver_end"]) == pytest.approx(q["maneuver_end_distance"], abs=0.005)
-    assert abs(np.hypot(*turned) - q["maneuver_end_distance"]) > 0.03
+    assert np.hypot(*q.maneuver_end) == pytest.approx(q.maneuver_end_distance, abs=0.005)
+    assert abs(np.hypot(*turned) - q.maneuver_end_distance) > 0.03
 
 
 def test_the_person_creeps():
-    v = np.hypot(*thesis.scenario()["tracks"]["velocity"])
-    assert v < thesis.quoted()["track"]["speed_limit"]
+    v = np.hypot(*thesis.reported().scenario.tracks.velocity)
+    assert v < thesis.reported().quoted.track.speed_limit

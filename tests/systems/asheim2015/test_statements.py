@@ -12,24 +12,24 @@ from dopplerlib.model.range_rate import range_rate
 from dopplerlib.model.ranging_noise import detection_probability
 from dopplerlib.systems import asheim2015 as thesis
 
-QUOTED, SCENARIO = thesis.quoted(), thesis.scenario()
+QUOTED, SCENARIO = thesis.reported().quoted, thesis.reported().scenario
 RADARS = (0, 1)
 
 
 @pytest.fixture(scope="module")
 def records():
-    return thesis.simulate(60, rng=np.random.default_rng(1), duration=60.0)
+    return thesis.simulate_radars(60, rng=np.random.default_rng(1), duration=60.0)
 
 
 @pytest.fixture(scope="module")
 def tracks(records):
     z = records.z[..., None, :]
     found = {
-        (name, gate): thesis.filter_radar(z, thesis.settings(name, gate=gate))
+        (name, gate): thesis.track_ranges(z, thesis.filter_settings(name, gate=gate))
         for name in ("code", "text")
         for gate in ("box", None)
     }
-    found["range only"] = thesis.filter_radar(z, thesis.settings("code"), doppler=False)
+    found["range only"] = thesis.track_ranges(z, thesis.filter_settings("code"), doppler=False)
     return found
 
 
@@ -41,8 +41,8 @@ def range_rms(records, track, radar, low, high):
 
 def position_error(records, track=None):
     d = records.z[..., 0] if track is None else track.x[..., 0]
-    p, _ = thesis.triangulate(d[:, 0], d[:, 1], records.baseline)
-    return thesis.distance_error(p, records.truth)
+    p, _ = thesis.clipped_bilateration(d[:, 0], d[:, 1], records.baseline)
+    return thesis.position_errors(p, records.truth)
 
 
 def position_rms(records, track, at, half_width):
@@ -51,8 +51,8 @@ def position_rms(records, track, at, half_width):
 
 def pass_chance(records, radar):
     """Return the chance of each scan to be inside the box of a filter that knows the truth."""
-    sigma = thesis.deviations(records.ranges[radar, :, 0])
-    return np.prod(2 * norm.cdf(np.array(thesis.settings("code").box) / sigma) - 1, axis=-1)
+    sigma = thesis.noise_std(records.ranges[radar, :, 0])
+    return np.prod(2 * norm.cdf(np.array(thesis.filter_settings("code").box) / sigma) - 1, axis=-1)
 
 
 def test_a_filter_on_ranges_improves_on_the_measurements(records, tracks):
@@ -85,18 +85,18 @@ def test_a_track_is_left_when_ten_scans_in_a_row_miss_the_box(records, tracks, r
     """
     chance = pass_chance(records, radar)
     inside = np.random.default_rng(2).random((400, len(chance))) < chance
-    expected = np.median(thesis.departure(inside, records.time))
-    gone = thesis.departure(tracks["code", "box"].updated[:, radar], records.time)
+    expected = np.median(thesis.departure_times(inside, records.time))
+    gone = thesis.departure_times(tracks["code", "box"].updated[:, radar], records.time)
     assert abs(np.median(gone) - expected) < 2.0
-    told = QUOTED["departure"][f"R{radar + 1}_time"]
+    told = QUOTED.departure.table[f"R{radar + 1}_time"]
     assert np.quantile(gone, 0.025) < told < np.quantile(gone, 0.975)
 
 
 def test_radar_2_is_as_far_as_the_thesis_says_when_it_is_left():
     """Half a second, to which the time is given, is 7 cm; the distance is given to 5 cm."""
-    q = QUOTED["departure"]
-    d = range_rate(thesis.straight_track([q["R2_time"]]), thesis.radars())[0, 1, 0]
-    assert d == pytest.approx(q["R2_distance"], abs=0.12)
+    q = QUOTED.departure
+    d = range_rate(thesis.straight_track([q.R2_time]), thesis.radar_positions())[0, 1, 0]
+    assert d == pytest.approx(q.R2_distance, abs=0.12)
 
 
 def test_the_range_rate_harms_radar_2_while_the_person_passes_it(records, tracks):
@@ -129,18 +129,18 @@ def test_what_is_said_of_measured_positions_fits_some_distances_and_not_others(r
         at = (records.distance >= low) & (records.distance <= high)
         return np.median(summary(error[:, at]))
 
-    near = QUOTED["real"]["raw_near"]
+    near = QUOTED.real.raw_near
     assert off(measured, 2, 3) < near[0] < off(measured, 2, 3, lambda e: e.max(axis=1))
-    about = QUOTED["real"]["error_at_four"]
+    about = QUOTED.real.error_at_four
     assert off(measured, 3.9, 4.1) > about / 2 > 3 * off(estimated, 3.9, 4.1)
-    low, high = QUOTED["range"]["raw_beyond_four"]
+    low, high = QUOTED.range.raw_beyond_four
     assert low < off(measured, 4.4, 4.7) < high < off(measured, 5, 5.66) / 2
     assert off(estimated, 4.4, 4.7) < low / 2
 
 
 def test_other_settings_reach_farther(records, tracks):
     """6.0 against 5.6 m, with an interval of a tenth: by chance 1e-6."""
-    own = thesis.filter_radar(records.z[..., None, :], thesis.settings("modern"))
+    own = thesis.track_ranges(records.z[..., None, :], thesis.filter_settings("modern"))
     reach = [
         thesis.usable_range(position_error(records, track), records.time, records.distance)
         for track in (tracks["code", "box"], own)
@@ -151,7 +151,7 @@ def test_other_settings_reach_farther(records, tracks):
 def test_the_range_to_radar_2_falls_until_the_person_has_passed_it():
     """By hand: the point of the diagonal nearest to (0.5, 0) is (0.25, 0.25), after 2.5 s."""
     t = np.arange(0, 6, 0.01)
-    d = range_rate(thesis.straight_track(t), thesis.radars())[:, 1, 0]
+    d = range_rate(thesis.straight_track(t), thesis.radar_positions())[:, 1, 0]
     assert t[np.argmin(d)] == pytest.approx(2.5, abs=0.011)
 
 
@@ -175,7 +175,7 @@ def test_measured_positions_fail_before_estimates_and_positions_before_ranges(re
     )
     assert raw < 0.9 * fused < fused < range_1
     each = thesis.usable_range(position_error(records, track)[:, None], t, d)
-    assert np.quantile(each, 0.025) < QUOTED["range"]["fused"] < np.quantile(each, 0.975)
+    assert np.quantile(each, 0.025) < QUOTED.range.fused < np.quantile(each, 0.975)
 
 
 def test_the_gate_helps_the_estimate_with_the_settings_of_the_text_only(records, tracks):
@@ -200,7 +200,7 @@ def test_the_circles_meet_as_often_as_the_difference_of_ranges_is_below_the_base
     raw = thesis.raw_positions(records)
     at = slice(400, 500, 2)
     d = records.ranges[:, at, 0]
-    sigma = np.hypot(*thesis.deviations(d)[..., 0])
+    sigma = np.hypot(*thesis.noise_std(d)[..., 0])
     off, b = d[0] - d[1], records.baseline
     expected = np.mean(norm.cdf((b - off) / sigma) - norm.cdf((-b - off) / sigma))
     assert expected < 0.4  # the claim is that they always do
@@ -209,32 +209,32 @@ def test_the_circles_meet_as_often_as_the_difference_of_ranges_is_below_the_base
 
 def test_the_printed_error_where_it_is_compared_is_one_of_a_normal_error():
     """Its deviation is that of the bound for one scan, which measured positions attain."""
-    sd = np.sqrt(thesis.one_scan_bound(QUOTED["range"]["compared"])[0, 0])
-    beyond = 2 * norm.sf(QUOTED["error_area"]["x"] / sd)
+    sd = np.sqrt(thesis.one_scan_bound(QUOTED.range.compared)[0, 0])
+    beyond = 2 * norm.sf(QUOTED.error_area.x / sd)
     assert 0.025 < beyond < 0.975
 
 
 def test_beyond_four_meters_the_bound_of_a_scan_is_what_the_thesis_reads_off():
     p = thesis.straight_track(np.arange(31, 33.05, 0.1))[:, :2]
-    assert np.hypot(*p.T).min() > QUOTED["range"]["axis"]
+    assert np.hypot(*p.T).min() > QUOTED.range.axis
     total = np.trace(thesis.one_scan_bound(p), axis1=-2, axis2=-1)
-    low, high = QUOTED["range"]["raw_beyond_four"]
+    low, high = QUOTED.range.raw_beyond_four
     assert low < np.sqrt(total.mean()) < high
 
 
 def test_half_of_the_echoes_are_missed_long_before_the_useful_range():
-    alarms = SCENARIO["detection"]["false_alarm"]
+    alarms = SCENARIO.detection.false_alarm
     d = np.linspace(3, 5, 2001)
     half = d[np.argmin(np.abs(detection_probability(thesis.snr(d), alarms) - 0.5))]
     assert half == pytest.approx(3.66, abs=0.005)  # where the chance is a half, found by hand
-    assert detection_probability(thesis.snr(QUOTED["range"]["fused"]), alarms) < 0.01
+    assert detection_probability(thesis.snr(QUOTED.range.fused), alarms) < 0.01
 
 
 def test_a_radar_that_misses_has_as_many_detections_as_their_chance_says():
     """200 runs in 500 scans of two radars: 5 standard errors of at most 0.036, by chance 1e-6."""
-    alarms = SCENARIO["detection"]["false_alarm"]
-    seen = thesis.simulate(200, rng=np.random.default_rng(3), false_alarm=alarms)
-    all_seen = thesis.simulate(200, rng=np.random.default_rng(3))
+    alarms = SCENARIO.detection.false_alarm
+    seen = thesis.simulate_radars(200, rng=np.random.default_rng(3), false_alarm=alarms)
+    all_seen = thesis.simulate_radars(200, rng=np.random.default_rng(3))
     chance = detection_probability(thesis.snr(seen.ranges[..., 0]), alarms)
     there = np.isfinite(seen.z[..., 0])
     spread = np.sqrt(np.maximum(chance * (1 - chance), 1e-3) / 200)
@@ -244,7 +244,7 @@ def test_a_radar_that_misses_has_as_many_detections_as_their_chance_says():
 
 def test_the_error_across_goes_with_one_over_the_baseline():
     """In front, far beyond the baseline, to a few percent."""
-    p = SCENARIO["error_area"]["position"]
-    b = SCENARIO["radars"]["baseline"], SCENARIO["real"]["baseline"]
+    p = SCENARIO.error_area.position
+    b = SCENARIO.radars.baseline, SCENARIO.real.baseline
     sd = [np.sqrt(thesis.one_scan_bound(p, one)[0, 0]) for one in b]
     assert sd[1] / sd[0] == pytest.approx(b[0] / b[1], rel=0.05)

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from dopplerlib.systems import macaveiu2013 as paper
-from dopplerlib.systems.macaveiu2013.published import sensor
 
-PATHS = paper.paths()
-S = paper.settings()
+PATHS = paper.vehicle_paths()
+S = paper.automotive_settings()
 
 
 @pytest.mark.parametrize("path", [*PATHS.values(), paper.hard_turn()[0]], ids=lambda p: p.title)
@@ -48,7 +47,10 @@ def test_the_lane_change_of_one_period_is_a_lane_wide_and_comes_back():
 
 def test_bandwidth_and_range_resolution_belong_together():
     assert 299_792_458.0 / (2 * S.bandwidth) == pytest.approx(S.range_resolution, rel=1e-3)
-    assert sensor()["v_min"] == pytest.approx(S.wavelength / (2 * S.T), rel=3e-3)  # three digits
+    one_cell = S.wavelength / (2 * S.T)
+    assert paper.reported().scenario.polar.v_min == pytest.approx(
+        one_cell, rel=3e-3
+    )  # three digits
 
 
 def test_the_hard_turn_turns_by_a_quarter_at_constant_speed():

@@ -5,9 +5,9 @@ import pytest
 
 from dopplerlib.signal import fsk
 from dopplerlib.signal import waveforms as w
-from dopplerlib.systems.macaveiu2013 import settings, signals
+from dopplerlib.systems import macaveiu2013 as paper
 
-RADAR = settings().radar
+RADAR = paper.automotive_settings().radar
 ONE = [[30.0, -5.0]]
 T1 = RADAR.duration / 2
 SLOPE = RADAR.bandwidth / T1
@@ -81,7 +81,7 @@ def test_a_car_is_long_in_range_and_a_pedestrian_in_range_rate():
 
     point = spread([[20.0, 2.8]])
     assert max(point) <= 3
-    car, pedestrian = spread(signals.CAR), spread(signals.PEDESTRIAN)
+    car, pedestrian = spread(paper.CAR), spread(paper.PEDESTRIAN)
     assert car[0] >= 4 and car[1] <= point[1] + 1
     assert pedestrian[0] <= point[0] + 1 and pedestrian[1] >= 10
 
@@ -99,5 +99,5 @@ def test_a_target_faster_than_the_limit_is_folded():
 
 def test_noise_has_the_power_it_is_asked_for():
     """Mean power of 40 000 samples: off by 5 deviations, 2.5 %, with probability 6e-7."""
-    noise = signals.noisy(np.zeros(40_000, complex), 3.0, rng=np.random.default_rng(2))
+    noise = paper.noisy_echoes(np.zeros(40_000, complex), 3.0, rng=np.random.default_rng(2))
     assert np.mean(np.abs(noise) ** 2) == pytest.approx(10**-0.3, rel=0.025)

@@ -2,14 +2,16 @@
 
 import numpy as np
 
-from ...estimation.linear_kalman import kf
-from ...estimation.radial_velocity import radial_velocity_terms
-from ...model.range_rate import range_rate, range_rate_jacobian
-from ...replication.readings import Readings
-from .expected_error import error_area, one_scan_bound
-from .in_the_plane import range_and_angle_jacobian
-from .published import deviations, quoted, resolutions, scenario, settings, snr
-from .scene import maneuver_track, radars, straight_track
+from ....estimation.linear_kalman import kf
+from ....estimation.radial_velocity import radial_velocity_terms
+from ....model.range_rate import range_rate, range_rate_jacobian
+from ....replication.readings import Readings
+from ..cartesian_tracker import range_and_angle_jacobian
+from ..expected_error import error_area, one_scan_bound
+from ..noise import noise_std, resolutions, snr
+from ..published import reported
+from ..scene import maneuver_track, radar_positions, straight_track
+from ..settings import filter_settings
 
 
 def settings_and_formulas():
@@ -19,48 +21,46 @@ def settings_and_formulas():
     -------
     dict
     """
-    s, q = scenario(), quoted()
-    n = s["noise"]
-    code, text = settings("code"), settings("text")
-    ends = [track(np.array([s["tracks"]["duration"]]))[0, :2]
+    s, q = reported().scenario, reported().quoted
+    n = s.noise
+    code, text = filter_settings("code"), filter_settings("text")
+    ends = [track(np.array([s.tracks.duration]))[0, :2]
             for track in (straight_track, maneuver_track)]  # fmt: skip
-    corner = np.abs(error_area(snr_db=s["error_area"]["snr"]) - s["error_area"]["position"])
-    front = s["error_area"]["position"]
+    corner = np.abs(error_area(snr_db=s.error_area.snr) - s.error_area.position)
+    front = s.error_area.position
     wavelengths = {
-        "c / f": n["speed_of_light"] / n["frequency"],
-        "code": q["noise"]["wavelength_code"],
-        "printed": q["noise"]["wavelength_printed"],
+        "c / f": n.speed_of_light / n.frequency,
+        "code": q.noise.wavelength_code,
+        "printed": q.noise.wavelength_printed,
     }
-    velocities = {name: one / (2 * n["integration"]) for name, one in wavelengths.items()}
-    at = np.hypot(*(np.array(front) - radars()).T)
+    velocities = {name: one / (2 * n.integration) for name, one in wavelengths.items()}
+    at = np.hypot(*(np.array(front) - radar_positions()).T)
     return {
         "range-variance": float(code.R(1.0)[0]),
         "process-noise": np.diag(code.Q),
         "wavelength": wavelengths["c / f"],
         "velocity-resolution": Readings(velocities),
         "range-resolution": resolutions()[0],
-        "range-resolution-formula": n["speed_of_light"]
-        * 10.0 ** q["noise"]["pulse_exponent_printed"]
-        / 2,
+        "range-resolution-formula": n.speed_of_light * 10.0**q.noise.pulse_exponent_printed / 2,
         "snr-at-one": float(snr(1.0)),
-        "speed": float(np.hypot(*s["tracks"]["velocity"])),
+        "speed": float(np.hypot(*s.tracks.velocity)),
         "straight-end": float(np.hypot(*ends[0])),
         "maneuver-end": ends[1],
         "maneuver-distance": float(np.hypot(*ends[1])),
-        "both-axes": float(np.hypot(q["range"]["axis"], q["range"]["axis"])),
+        "both-axes": float(np.hypot(q.range.axis, q.range.axis)),
         "error-area": corner.max(axis=0),
         "error-area-snr": float(snr(at).mean()),
-        "shared-integration": 1 - s["tracks"]["T"] / n["integration"],
-        "R2-approaches": float(range_rate(straight_track([0.0]), radars())[0, 1, 1]),
-        "R1-distance": _range_at(0, q["departure"]["R1_time"]),
-        "R2-distance": _range_at(1, q["departure"]["R2_time"]),
+        "shared-integration": 1 - s.tracks.T / n.integration,
+        "R2-approaches": float(range_rate(straight_track([0.0]), radar_positions())[0, 1, 1]),
+        "R1-distance": _range_at(0, q.departure.R1_time),
+        "R2-distance": _range_at(1, q.departure.R2_time),
         "gate-grows": gate_growth(text),
         "directional-cosine": _printed_cosine(),
         "extra-variance": _extra_variance_ratio(),
         "pseudo-innovation": _printed_pseudo_innovation(),
         "table-3-2": _printed_angle_innovation(),
         "difference-bias": _difference_bias(),
-        "baseline": float(np.sqrt(_across(s["real"]["baseline"]) / _across(None))),
+        "baseline": float(np.sqrt(_across(s.real.baseline) / _across(None))),
         "closest-radar": _influence_ratio(),
     }
 
@@ -84,7 +84,8 @@ def gate_growth(own, early=2, late=450):
     -----
     Eqs 4.3 and 4.6: an innovation passes if its square over S is below c sigma over S.
     """
-    c, sigma = (scenario()["filter"][name] for name in ("c", "sigma_range"))
+    f = reported().scenario.filter
+    c, sigma = f.c, f.sigma_range
     F = np.array([[1.0, own.T], [0.0, 1.0]])
     z = np.zeros((late + 1, 2))
     z[late - 100 :] = np.nan
@@ -95,29 +96,29 @@ def gate_growth(own, early=2, late=450):
 
 
 def _range_at(radar, time):
-    return float(range_rate(straight_track([time]), radars())[0, radar, 0])
+    return float(range_rate(straight_track([time]), radar_positions())[0, radar, 0])
 
 
 def _across(baseline):
-    return one_scan_bound(scenario()["error_area"]["position"], baseline)[0, 0]
+    return one_scan_bound(reported().scenario.error_area.position, baseline)[0, 0]
 
 
 def _influence_ratio():
     """Return how far a position follows the far radar's range, over how far the near one's."""
-    p = np.array([*quoted()["range"]["compared"], 0.0, 0.0])
-    follows = np.linalg.inv(range_rate_jacobian(p, radars())[:, 0, :2])
+    p = np.array([*reported().quoted.range.compared, 0.0, 0.0])
+    follows = np.linalg.inv(range_rate_jacobian(p, radar_positions())[:, 0, :2])
     far, near = np.linalg.norm(follows, axis=0)
     return round(float(far / near), 9)
 
 
 def _printed_cosine():
-    Y = np.array(quoted()["range"]["compared"])
+    Y = np.array(reported().quoted.range.compared)
     return float(np.linalg.norm(np.sqrt(Y @ Y) * Y))
 
 
 def _example():
     """Return a state in the plane and its covariance, in the middle of the straight track."""
-    x = straight_track([scenario()["tracks"]["duration"] / 2])[0]
+    x = straight_track([reported().scenario.tracks.duration / 2])[0]
     return x, np.diag([0.2, 0.1, 0.05, 0.1]) ** 2
 
 
@@ -145,6 +146,6 @@ def _printed_angle_innovation():
 
 def _difference_bias():
     """Return the error of a rate from differences at the first scan, in deviations of its noise."""
-    T = scenario()["tracks"]["T"]
-    first, second = range_rate(straight_track([0.0, T]), radars()[:1])[:, 0]
-    return float(((second[0] - first[0]) / T - first[1]) / deviations(first[0])[1])
+    T = reported().scenario.tracks.T
+    first, second = range_rate(straight_track([0.0, T]), radar_positions()[:1])[:, 0]
+    return float(((second[0] - first[0]) / T - first[1]) / noise_std(first[0])[1])

@@ -1,17 +1,25 @@
 """The path of one radar: gate, nearest neighbor, Kalman filter (Chapters 3 and 4)."""
 
+from typing import Annotated, Literal
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Array, Booleans, checked, shaped
 from ..._records import record
+from ..._typing import FloatArray
 from ...estimation import recursion
 from ...tracking.association import nearest_neighbor
 from ...tracking.gates import chi2_gate, fixed_box_gate
-from .published import Settings
+from .settings import FilterSettings
+
+Detections = Annotated[FloatArray, shaped(None, None, 2, check=_checks.measured)]
+Starts = Annotated[FloatArray, shaped(2)]
 
 
+@checked
 @record
-class RadarTrack:
+class RangeTrack:
     """What the filter of one radar makes of its detections.
 
     Attributes
@@ -30,16 +38,23 @@ class RadarTrack:
         there was no detection, and at the first scan.
     """
 
-    x: np.ndarray
-    P: np.ndarray
-    chosen: np.ndarray
-    updated: np.ndarray
-    nis: np.ndarray
+    x: Annotated[FloatArray, shaped(None, 2)]
+    P: Annotated[FloatArray, shaped(None, 2, 2)]
+    chosen: Annotated[FloatArray, shaped(None, 2, check=_checks.measured)]
+    updated: Booleans
+    nis: Array
 
 
-def filter_radar(
-    detections, settings, *, doppler=True, association="gate-first", reuse_first=False, x0=None
-):
+@checked
+def track_ranges(
+    detections: Detections,
+    settings: FilterSettings,
+    *,
+    doppler: bool = True,
+    association: Literal["gate-first", "nearest-first"] = "gate-first",
+    reuse_first: bool = False,
+    x0: Starts | None = None,
+) -> RangeTrack:
     """Run gate, nearest neighbor and Kalman filter over records of one radar.
 
     Parameters
@@ -47,8 +62,8 @@ def filter_radar(
     detections : array_like, shape (..., K, M, 2)
         Range in m and range rate in m/s of up to M detections in each of K scans; NaN where there
         is none.
-    settings : Settings
-        How the filter is set, see `settings`.
+    settings : FilterSettings
+        How the filter is set, see `filter_settings`.
     doppler : bool
         Whether the range rate updates the filter. The box looks at it in any case, as in the
         code; a gate on NIS only if it updates.
@@ -63,26 +78,30 @@ def filter_radar(
 
     Returns
     -------
-    RadarTrack
+    RangeTrack
 
     Raises
     ------
     ValueError
-        If a shape or a name does not fit, there is no scan or no room for a detection, or a first
-        scan is empty and no `x0` is given.
+        If a shape or a name does not fit, there is no scan or no room for a detection, a first
+        scan is empty and no `x0` is given, or numbers are too large for a filter.
 
     Notes
     -----
     Åsheim (2015), Appendix A.5 to A.7. The noise of range and range rate is independent, so that
     updating with the one and then with the other, as Table 3.3 does, is the same as with both at
     once; and each such update is one of scalars, without a matrix to invert.
+
+    Examples
+    --------
+    >>> from dopplerlib.systems.asheim2015 import filter_settings
+    >>> detections = [[[2.0, 0.1]], [[2.1, 0.1]], [[np.nan, np.nan]]]
+    >>> track_ranges(detections, filter_settings("code")).updated.tolist()
+    [True, True, False]
     """
-    z = _checks.real("detections", detections)
-    _checks.check_shape("detections", z, (None, None, 2))
+    z = detections
     if not z.shape[-3] or not z.shape[-2]:
         raise ValueError(f"detections must have scans and detections in each, got shape {z.shape}")
-    _checks.instance("settings", settings, Settings)
-    _checks.one_of("association", association, ("gate-first", "nearest-first"))
     batch, K = z.shape[:-3], z.shape[-3]
     x = _start(z[..., 0, :, :], x0)
     P = np.broadcast_to(settings.P0[[0, 0, 1], [0, 1, 1]], (*batch, 3))
@@ -115,7 +134,8 @@ def filter_radar(
         times = range(1, K)
         first = x, P, np.where(seen[..., None], x, np.nan), seen, np.full(batch, np.nan)
     x, P, *rest = recursion.scan(step, (x, P), times, len(batch), first=first)
-    return RadarTrack(x, P[..., [0, 1, 1, 2]].reshape(*P.shape[:-1], 2, 2), *rest)
+    _checks.estimates("detections, settings, x0", x, P)
+    return RangeTrack(x, P[..., [0, 1, 1, 2]].reshape(*P.shape[:-1], 2, 2), *rest)
 
 
 def _predicted(x, P, settings):
@@ -167,4 +187,5 @@ def _start(z, x0):
         return first
     if x0 is None:
         raise ValueError("x0 must be given where the first scan is empty, got None")
-    return np.where(empty[..., None], _checks.finite("x0", x0, (2,)), first)
+    _checks.check_broadcast("x0", x0.shape[:-1], "detections", empty.shape)
+    return np.where(empty[..., None], x0, first)

@@ -1,23 +1,30 @@
 """For which noise the claims of Section IV hold: the document does not state its noise."""
 
 from itertools import pairwise
+from typing import Annotated, Literal
 
 import numpy as np
 
 from ... import _checks
+from ..._hints import Positive, Reals, Runs, checked, exactly
 from ..._records import record
+from ..._typing import BoolArray, FloatArray, IntArray
 from ...evaluation.intervals import proportion_interval
 from ...model.motion import ncv_transition
-from .published import paths, settings
-from .tracking import gain_sequence, measure
+from .linear_filter import gain_sequence, measure_vehicle
+from .settings import AutomotiveSettings, automotive_settings
+from .truth import vehicle_paths
 
 MUCH_SMALLER = 0.5  # our reading of "much smaller than 1 m": less than half of it
 MOST = 0.9  # a claim on every record holds where it is true in this share of them
 CLAIMS = ("Fig 7 much below 1 m", "all below 1 m", "10b and 11c worse", "all three")
+Largest = Annotated[FloatArray, exactly(None, None)]
+Axis = tuple[Literal["sigma_x", "sigma_v", "w"], Annotated[FloatArray, exactly(None)]]
 
 
+@checked
 @record
-class Scores:
+class PathScores:
     """How the five paths went, in every run.
 
     Attributes
@@ -32,31 +39,48 @@ class Scores:
         Root mean square of the errors of v_x and v_y after the first second, in m/s.
     resolution : float
         Range resolution in m, the measure of the claims.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described.
+
+    Examples
+    --------
+    >>> scores = score_paths(2, rng=np.random.default_rng(1))
+    >>> [scores.by_claim()[name].shape for name in CLAIMS]
+    [(2,), (2,), (2,), (2,)]
     """
 
-    figures: tuple
-    settled: np.ndarray
-    whole: np.ndarray
-    speed: np.ndarray
-    resolution: float
+    figures: tuple[int, ...]
+    settled: Largest
+    whole: Largest
+    speed: Annotated[FloatArray, exactly(None, None, 2)]
+    resolution: Positive
 
-    def small_in_figure_7(self, largest=None):
+    def __post_init__(self):
+        """Check that the five figures are there."""
+        if not {7, 8, 9, 10, 11} <= set(self.figures):
+            raise ValueError(f"figures must be those from 7 to 11, got {self.figures}")
+        for name in ("settled", "whole", "speed"):
+            if len(getattr(self, name)) != len(self.figures):
+                raise ValueError(f"{name} must have a row for each of figures {self.figures}")
+
+    def small_in_figure_7(self) -> BoolArray:
         """Return in which runs the error of Fig 7 is much smaller than the resolution, (runs,)."""
-        largest = self.settled if largest is None else largest
-        return largest[self.figures.index(7)] < MUCH_SMALLER * self.resolution
+        return self.settled[self.figures.index(7)] < MUCH_SMALLER * self.resolution
 
-    def below_resolution(self, largest=None):
+    def below_resolution(self) -> BoolArray:
         """Return in which runs all five paths stay below the resolution, shape (runs,)."""
-        largest = self.settled if largest is None else largest
-        return largest.max(axis=0) < self.resolution
+        return self.settled.max(axis=0) < self.resolution
 
-    def speed_worse_when_it_varies(self):
+    def speed_worse_when_it_varies(self) -> BoolArray:
         """Return in which runs Figs 10b and 11c are worse than all of Figs 7 to 9, (runs,)."""
         row = {figure: self.speed[i] for i, figure in enumerate(self.figures)}
         steady = np.maximum.reduce([row[7], row[8], row[9]])
         return (row[10][:, 0] > steady[:, 0]) & (row[11][:, 1] > steady[:, 1])
 
-    def by_claim(self):
+    def by_claim(self) -> dict[str, BoolArray]:
         """Return in which runs each of `CLAIMS` is true, as a dict of arrays of shape (runs,)."""
         three = (
             self.small_in_figure_7(),
@@ -66,7 +90,10 @@ class Scores:
         return dict(zip(CLAIMS, (*three, np.all(three, axis=0)), strict=True))
 
 
-def scores(runs, *, rng, s=None):
+@checked
+def score_paths(
+    runs: Runs, *, rng: np.random.Generator, s: AutomotiveSettings | None = None
+) -> PathScores:
     """Run all five paths and score them.
 
     Parameters
@@ -75,21 +102,24 @@ def scores(runs, *, rng, s=None):
         Number of independent records of each path.
     rng : numpy.random.Generator
         Source of the measurement noise.
-    s : Settings, optional
+    s : AutomotiveSettings, optional
         Those of the data file if None.
 
     Returns
     -------
-    Scores
+    PathScores
 
     Raises
     ------
     ValueError
-        If `runs` is not a positive whole number, or `rng` is not a generator.
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> score_paths(2, rng=np.random.default_rng(1)).settled.shape
+    (5, 2)
     """
-    runs = _checks.whole_number("runs", runs)
-    _checks.generator("rng", rng)
-    s = settings() if s is None else s
+    s = automotive_settings() if s is None else s
     return _scores(_unit_noise(runs, rng, s), s)
 
 
@@ -98,9 +128,9 @@ def _unit_noise(runs, rng, s):
 
     Time first, so that a step of the filter works on contiguous memory.
     """
-    one, nothing = s.with_(sigma_p=1.0, sigma_v=1.0), np.zeros((s.samples, 4))
-    children = rng.spawn(len(paths()))
-    noise = np.stack([measure(nothing, runs, rng=child, s=one) for child in children])
+    one, nothing = s.with_(sigma_x=1.0, sigma_v=1.0), np.zeros((s.samples, 4))
+    children = rng.spawn(len(vehicle_paths()))
+    noise = np.stack([measure_vehicle(nothing, runs, rng=child, s=one) for child in children])
     noise = noise.reshape(*noise.shape[:-1], 2, 2)
     return np.ascontiguousarray(np.moveaxis(noise, (2, 4), (0, 1)))
 
@@ -114,13 +144,13 @@ def _scores(noise, s):
     2 by 2. `e` (2, paths * runs * axes) holds position and velocity of all of them side by side,
     so that a step is one product of matrices. Only what is scored is kept.
     """
-    five = paths()
+    five = vehicle_paths()
     truth = np.stack([path.truth for path in five.values()], axis=1)
     F = ncv_transition(s.T, dim=1)
     push = (truth[1:] - truth[:-1] @ ncv_transition(s.T).T).reshape(-1, len(five), 2, 2)
     K = gain_sequence(s)
     stay = np.eye(2) - K[1:]
-    A, scaled = stay @ F, K * [s.sigma_p, s.sigma_v]
+    A, scaled = stay @ F, K * [s.sigma_x, s.sigma_v]
     pushed = np.einsum("kij,kfaj->kifa", stay, push)[..., None, :]
     shape, flat = noise.shape[1:], noise.reshape(*noise.shape[:2], -1)
     e = scaled[0] @ flat[0]  # the first state is the first measurement: its gain is the identity
@@ -135,7 +165,7 @@ def _scores(noise, s):
             np.maximum(settled, off, out=settled)
             speed += e[1] ** 2
         e = e.reshape(2, -1)
-    return Scores(
+    return PathScores(
         tuple(five),
         settled=np.sqrt(settled),
         whole=np.sqrt(np.maximum(whole, settled)),
@@ -144,19 +174,27 @@ def _scores(noise, s):
     )
 
 
-def claim_map(rows, columns, runs, *, rng, s=None):
+@checked
+def claim_map(
+    rows: Axis,
+    columns: Axis,
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    s: AutomotiveSettings | None = None,
+) -> dict[str, FloatArray]:
     """Return in how many runs the claims hold, over two settings.
 
     Parameters
     ----------
     rows, columns : tuple (str, sequence of float)
-        Name and values of a setting: "sigma_p", "sigma_v" or "w" of `Settings`.
+        Name and values of a setting: "sigma_x", "sigma_v" or "w" of `AutomotiveSettings`.
     runs : int
         Number of records of each path at each place of the map.
     rng : numpy.random.Generator
         Source of the measurement noise. Every place gets the same draws, scaled: places differ by
         their settings alone.
-    s : Settings, optional
+    s : AutomotiveSettings, optional
         What is not varied; those of the data file if None.
 
     Returns
@@ -168,15 +206,20 @@ def claim_map(rows, columns, runs, *, rng, s=None):
     Raises
     ------
     ValueError
-        If a name is none of the three; see `scores`.
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(1)
+    >>> shares = claim_map(("sigma_x", [0.5]), ("w", [0.01, 0.1]), 2, rng=rng)
+    >>> shares["all three"].shape
+    (3, 1, 2)
     """
-    s = settings() if s is None else s
+    s = automotive_settings() if s is None else s
     (row, heights), (column, widths) = rows, columns
-    for name in (row, column):
-        _checks.one_of("the name of a setting", name, ("sigma_p", "sigma_v", "w"))
     noise = _unit_noise(runs, rng, s)
     shape = len(heights), len(widths)
-    shares = {name: np.empty((3, *shape)) for name in CLAIMS}
+    shares: dict[str, FloatArray] = {name: np.empty((3, *shape)) for name in CLAIMS}
     for i, j in np.ndindex(shape):
         here = s.with_(**{row: heights[i], column: widths[j]})
         for name, true in _scores(noise, here).by_claim().items():
@@ -185,12 +228,13 @@ def claim_map(rows, columns, runs, *, rng, s=None):
     return shares
 
 
-def decided(shares):
+@checked
+def decided_claims(shares: Reals) -> IntArray:
     """Return where a claim holds: where it is true in most runs, `MOST` of them or more.
 
     Parameters
     ----------
-    shares : ndarray, shape (3, ...)
+    shares : array_like, shape (3, ...)
         Shares and the ends of their intervals, from `claim_map`.
 
     Returns
@@ -198,18 +242,33 @@ def decided(shares):
     ndarray of int, shape (...)
         1 where the whole interval says so, -1 where it says the contrary, 0 where the runs are too
         few to tell.
+
+    Raises
+    ------
+    ValueError
+        If `shares` is not of the kind described.
+
+    Examples
+    --------
+    >>> decided_claims([[1.0, 0.9, 0.2], [0.95, 0.7, 0.1], [1.0, 0.97, 0.3]]).tolist()
+    [1, 0, -1]
     """
+    if shares.shape[:1] != (3,):
+        raise ValueError(f"shares must have 3 as its first axis, got shape {shares.shape}")
     return np.where(shares[1] >= MOST, 1, np.where(shares[2] < MOST, -1, 0))
 
 
-def bounds(values, shares):
+@checked
+def claim_borders(
+    values: Annotated[FloatArray, exactly(None)], shares: Annotated[FloatArray, exactly(3, None)]
+) -> list[tuple[float, float, bool]]:
     """Return between which values of a setting a claim begins to hold, and ends.
 
     Parameters
     ----------
-    values : sequence of float
+    values : array_like, shape (values,)
         Of the setting, in rising order.
-    shares : ndarray, shape (3, values)
+    shares : array_like, shape (3, values)
         A row or a column of what `claim_map` returns for a claim.
 
     Returns
@@ -217,8 +276,19 @@ def bounds(values, shares):
     list of tuple (float, float, bool)
         The last value before and the first one after, both decided, and whether the claim holds
         after it.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> claim_borders([1, 2, 3], [[1.0, 0.9, 0.2], [0.95, 0.7, 0.1], [1.0, 0.97, 0.3]])
+    [(1.0, 3.0, False)]
     """
-    verdicts = decided(shares)
+    _checks.check_shape("shares", shares, (3, len(values)))
+    verdicts = decided_claims(shares)
     told = [(value, one) for value, one in zip(values, verdicts, strict=True) if one]
     return [
         (float(before), float(after), bool(now > 0))
@@ -227,29 +297,47 @@ def bounds(values, shares):
     ]
 
 
-def bounds_along(name, values, runs, *, rng, s=None):
+@checked
+def claim_borders_along(
+    name: Literal["sigma_x", "sigma_v", "w"],
+    values: Annotated[FloatArray, exactly(None)],
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    s: AutomotiveSettings | None = None,
+) -> dict[str, list[tuple[float, float, bool]]]:
     """Return between which values of one setting each claim begins to hold, and ends.
 
     Parameters
     ----------
-    name : {"sigma_p", "sigma_v", "w"}
+    name : {"sigma_x", "sigma_v", "w"}
         The setting.
-    values : sequence of float
+    values : array_like, shape (values,)
         In rising order.
-    runs, rng, s
-        See `claim_map`.
+    runs : int
+        Number of records of each path at each value.
+    rng : numpy.random.Generator
+        Source of the measurement noise.
+    s : AutomotiveSettings, optional
+        What is not varied; those of the data file if None.
 
     Returns
     -------
     dict of str to list
-        For each of `CLAIMS`, see `bounds`.
+        For each of `CLAIMS`, see `claim_borders`.
 
     Raises
     ------
     ValueError
         See `claim_map`.
+
+    Examples
+    --------
+    >>> found = claim_borders_along("w", [0.001, 0.1], 2, rng=np.random.default_rng(1))
+    >>> list(found) == list(CLAIMS)
+    True
     """
-    s = settings() if s is None else s
-    other = "w" if name == "sigma_p" else "sigma_p"  # stays what it is
+    s = automotive_settings() if s is None else s
+    other = "w" if name == "sigma_x" else "sigma_x"  # stays what it is
     shares = claim_map((name, values), (other, (getattr(s, other),)), runs, rng=rng, s=s)
-    return {claim: bounds(values, share[..., 0]) for claim, share in shares.items()}
+    return {claim: claim_borders(values, share[..., 0]) for claim, share in shares.items()}

@@ -1,17 +1,24 @@
 """The processing scheme of Fig 6: from raw detections to tracks."""
 
+from collections.abc import Callable, Iterable
+from typing import Annotated, Any, Literal
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Count, checked, exactly, shaped
 from ..._records import record
+from ..._typing import BoolArray, FloatArray, IntArray
 from ...model.motion import ncv_transition
 from ...model.polar_radar import polar_radar_h, polar_radar_jacobian
 from ...tracking.association import greedy_assign
 from ...tracking.gates import fixed_box_gate
 from ...tracking.management import TrackManager
-from ...tracking.multi_target import track_scans
-from . import polar
-from .published import settings
+from ...tracking.multi_target import ManagedTrack, track_scans
+from .polar_filters import polar_noise, start_polar
+from .published import reported
+from .settings import automotive_settings
+from .truth import Truth
 
 TARGET, CLUTTER, FALSE = 0, 1, 2  # where a detection comes from
 
@@ -25,11 +32,14 @@ FALSE_ALARMS = 0.3  # mean number a scan
 BOX = (4.5, 0.25, 0.5)  # m, rad, m/s: half-widths of the gate around an object; a car fits in
 # Of an object: the noise of its detections, and that of the point of the target that it stands for.
 OBJECT_NOISE = np.diag([0.6, 0.04, 0.15]) ** 2
+Detections = Annotated[FloatArray, shaped(None, 3)]
+Rule = Literal["always", "new tracks only", "never"]
 MANAGER = TrackManager(hits=4, window=6, delete_after=13)  # half a second without detection
 
 
+@checked
 @record
-class Scan:
+class VehicleScan:
     """Detections of one measurement.
 
     Attributes
@@ -38,18 +48,39 @@ class Scan:
         Range in m, azimuth in rad, range rate in m/s.
     source : ndarray of int, shape (detections,)
         `TARGET`, `CLUTTER` or `FALSE`; known in a simulation only.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described.
+
+    Examples
+    --------
+    >>> len(VehicleScan([[5.0, 0.0, 1.0]], [TARGET]).z)
+    1
     """
 
-    z: np.ndarray
-    source: np.ndarray
+    z: Annotated[FloatArray, shaped(None, 3)]
+    source: Annotated[IntArray, _checks.finite]
+
+    def __post_init__(self):
+        """Check that each detection has a source."""
+        if self.z.ndim != 2 or self.source.shape != (len(self.z),):
+            raise ValueError(f"source must have shape {(len(self.z),)}, got {self.source.shape}")
+        if not np.isin(self.source, (TARGET, CLUTTER, FALSE)).all():
+            raise ValueError(f"source must be 0, 1 or 2, got {self.source.tolist()}")
+        object.__setattr__(self, "source", self.source.astype(int))
 
 
-def simulate(truth, *, rng, points=POINTS):
+@checked
+def simulate_scans(
+    truth: Truth, *, rng: np.random.Generator, points: Count = POINTS
+) -> list[VehicleScan]:
     """Return scans of a target with several reflection points among things that stand still.
 
     Parameters
     ----------
-    truth : ndarray, shape (K, 4)
+    truth : array_like, shape (K, 4)
         True states of the middle of the target.
     rng : numpy.random.Generator
         Source of all randomness.
@@ -58,16 +89,19 @@ def simulate(truth, *, rng, points=POINTS):
 
     Returns
     -------
-    list of Scan
+    list of VehicleScan
 
     Raises
     ------
     ValueError
-        If `rng` is not a generator, or `points` is not a positive whole number.
+        If an argument is not of the kind described, or a point is on the radar.
+
+    Examples
+    --------
+    >>> len(simulate_scans([[0.0, 0.0, 5.0, 1.0]] * 4, rng=np.random.default_rng(1)))
+    4
     """
-    _checks.generator("rng", rng)
-    points = _checks.whole_number("points", points)
-    deviation = np.sqrt(np.diag(polar.noise()))
+    deviation = np.sqrt(np.diag(polar_noise()))
     place = np.zeros((OBJECTS, 4))
     place[:, 0], place[:, 2] = rng.uniform(-15, 15, OBJECTS), rng.uniform(4, 60, OBJECTS)
     still = polar_radar_h(place)
@@ -82,16 +116,17 @@ def simulate(truth, *, rng, points=POINTS):
         z = z + rng.standard_normal(z.shape) * deviation
         parts = (len(target), len(clutter), count)
         source = np.repeat([TARGET, CLUTTER, FALSE], parts)
-        scans.append(Scan(np.concatenate([z, false]), source))
+        scans.append(VehicleScan(np.concatenate([z, false]), source))
     return scans
 
 
-def reflection_points(truth, points=POINTS):
+@checked
+def reflection_points(truth: Truth, points: Count = POINTS) -> FloatArray:
     """Return the states of the points of the target that reflect.
 
     Parameters
     ----------
-    truth : ndarray, shape (K, 4)
+    truth : array_like, shape (K, 4)
         True states of its middle.
     points : int
         Their number.
@@ -102,7 +137,18 @@ def reflection_points(truth, points=POINTS):
         In a row of `LENGTH` along the heading; all have the velocity of the middle. A target that
         stands heads where it moved last, or where it will move first; one that never moves, along
         y.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described, or there are more than a hundred points.
+
+    Examples
+    --------
+    >>> reflection_points([[0.0, 0.0, 5.0, 1.0]])[0, :, 2].tolist()
+    [3.5, 5.0, 6.5]
     """
+    points = _checks.count("points", points, 100)
     heading = _heading(truth[:, 1::2])
     along = np.linspace(-LENGTH / 2, LENGTH / 2, points) if points > 1 else np.zeros(1)
     states = np.repeat(truth[:, None], points, axis=1)
@@ -119,49 +165,75 @@ def _heading(v):
     return v[moving[last]] / speed[moving[last], None]
 
 
-def moves(z):
+@checked
+def is_moving(z: Annotated[FloatArray, shaped(3, check=_checks.measured)]) -> BoolArray:
     """Return which detections move: the clutter rule.
 
     Parameters
     ----------
-    z : ndarray, shape (..., 3)
+    z : array_like, shape (..., 3)
         Range in m, azimuth in rad, range rate in m/s.
 
     Returns
     -------
     ndarray of bool, shape (...)
         False for clutter: whatever has a range rate below that of one resolution cell.
+
+    Raises
+    ------
+    ValueError
+        If `z` is not of the kind described.
+
+    Examples
+    --------
+    >>> is_moving([[5.0, 0.0, 1.0], [5.0, 0.0, 0.1]]).tolist()
+    [True, False]
     """
-    return np.abs(z[..., 2]) >= polar.sensor()["v_min"]
+    return np.abs(z[..., 2]) >= reported().scenario.polar.v_min
 
 
-def after_rule(scans, rule="always"):
+@checked
+def after_clutter_rule(scans: Iterable[VehicleScan], rule: Rule = "always") -> list[VehicleScan]:
     """Return the scans with the detections that are made into objects.
 
     Parameters
     ----------
-    scans : sequence of Scan
-        From `simulate`.
+    scans : iterable of VehicleScan
+        From `simulate_scans`.
     rule : {"always", "new tracks only", "never"}
-        See `run`.
+        See `track_objects`.
 
     Returns
     -------
-    list of Scan
+    list of VehicleScan
         Without what stands still if the rule is for all detections; else as they are.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> scan = VehicleScan([[5.0, 0.0, 1.0], [5.0, 0.0, 0.1]], [TARGET, CLUTTER])
+    >>> len(after_clutter_rule([scan])[0].z)
+    1
     """
-    scans = _checks.records("scans", scans, Scan)
     if rule != "always":
         return list(scans)
-    return [Scan(scan.z[moves(scan.z)], scan.source[moves(scan.z)]) for scan in scans]
+    kept = [(scan, is_moving(scan.z)) for scan in scans]
+    return [VehicleScan(scan.z[moving], scan.source[moving]) for scan, moving in kept]
 
 
-def objects(z):
+@checked
+def group_detections(
+    z: Annotated[FloatArray, shaped(None, 3)],
+) -> tuple[FloatArray, IntArray]:
     """Return the objects that detections make up: the detection-to-object association.
 
     Parameters
     ----------
-    z : ndarray, shape (detections, 3)
+    z : array_like, shape (detections, 3)
         Detections.
 
     Returns
@@ -171,11 +243,23 @@ def objects(z):
     member : ndarray of int, shape (detections,)
         Object of each detection.
 
+    Raises
+    ------
+    ValueError
+        If `z` is not of the kind described.
+
     Notes
     -----
     The nearest detection that has no object yet is the next one's middle; a box around it in range,
     azimuth and range rate says what belongs to it.
+
+    Examples
+    --------
+    >>> means, member = group_detections([[5.0, 0.0, 1.0], [7.0, 0.0, 1.0], [30.0, 0.0, 1.0]])
+    >>> means[:, 0].tolist(), member.tolist()
+    ([6.0, 30.0], [0, 0, 1])
     """
+    z = _checks.one_matrix("z", z)
     member = np.full(len(z), -1)
     near = fixed_box_gate(z[:, None] - z, BOX)
     means = []
@@ -187,13 +271,19 @@ def objects(z):
     return np.array(means).reshape(-1, 3), member
 
 
-def run(scans, rule="always", assign=greedy_assign, manager=MANAGER):
+@checked
+def track_objects(
+    scans: Iterable[VehicleScan],
+    rule: Rule = "always",
+    assign: Callable[..., Any] = greedy_assign,
+    manager: TrackManager = MANAGER,
+) -> list[ManagedTrack]:
     """Track through the whole scheme.
 
     Parameters
     ----------
-    scans : sequence of Scan
-        From `simulate`.
+    scans : iterable of VehicleScan
+        From `simulate_scans`.
     rule : {"always", "new tracks only", "never"}
         Where the clutter rule is applied: to all detections, as in Fig 6; only until a track is
         confirmed; or nowhere.
@@ -210,58 +300,86 @@ def run(scans, rule="always", assign=greedy_assign, manager=MANAGER):
     Raises
     ------
     ValueError
-        If `rule` is not one of the three.
+        If an argument is not of the kind described.
 
     Notes
     -----
     Macaveiu et al. (2013), Fig 6. The clutter rule there uses the range rate, since the radar
     stands still.
+
+    Examples
+    --------
+    >>> truth = np.linspace([0.0, 0.0, 5.0, 2.0], [0.0, 0.0, 5.8, 2.0], 11)
+    >>> tracks = track_objects(simulate_scans(truth, rng=np.random.default_rng(1)))
+    >>> sum(bool(track.confirmed.any()) for track in tracks)
+    1
     """
-    _checks.instance("manager", manager, TrackManager)
-    scans = _checks.records("scans", scans, Scan)
-    _checks.one_of("rule", rule, ("always", "new tracks only", "never"))
-    s = settings()
+    s = automotive_settings()
     return track_scans(
-        [objects(scan.z)[0] for scan in after_rule(scans, rule)],
+        [group_detections(scan.z)[0] for scan in after_clutter_rule(scans, rule)],
         ncv_transition(s.T),
         s.with_(w=0.03).E_x,  # agile enough for Figs 10 and 11
         polar_radar_h,
         polar_radar_jacobian,
         OBJECT_NOISE,
-        polar.start,
+        start_polar,
         manager,
         assign=assign,
         wrap=(1,),
-        new=moves if rule == "new tracks only" else None,
+        new=is_moving if rule == "new tracks only" else None,
     )
 
 
-def hidden(truth):
+@checked
+def hidden_scans(truth: Truth) -> BoolArray:
     """Return where the clutter rule deletes the target itself, were there no noise.
 
     Parameters
     ----------
-    truth : ndarray, shape (K, 4)
+    truth : array_like, shape (K, 4)
         True states.
 
     Returns
     -------
     ndarray of bool, shape (K,)
+
+    Raises
+    ------
+    ValueError
+        If `truth` is not of the kind described, or on the radar.
+
+    Examples
+    --------
+    >>> hidden_scans([[0.0, 1.0, 5.0, 0.0], [0.0, 0.0, 5.0, 1.0]]).tolist()
+    [True, False]
     """
-    return ~moves(polar_radar_h(truth))
+    return ~is_moving(polar_radar_h(truth))
 
 
-def longest_gap(seen):
+@checked
+def longest_gap(
+    seen: Annotated[BoolArray, exactly(None, None, check=_checks.booleans)],
+) -> IntArray:
     """Return the largest number of scans in a row without a detection.
 
     Parameters
     ----------
-    seen : ndarray of bool, shape (runs, K)
+    seen : array_like of bool, shape (runs, K)
         Whether the target is detected in a scan.
 
     Returns
     -------
     ndarray of int, shape (runs,)
+
+    Raises
+    ------
+    ValueError
+        If `seen` is not of the kind described.
+
+    Examples
+    --------
+    >>> longest_gap([[True, False, False, True, False]]).tolist()
+    [2]
     """
     longest = np.zeros(len(seen), int)
     current = np.zeros(len(seen), int)

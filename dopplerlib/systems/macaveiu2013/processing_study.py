@@ -5,24 +5,32 @@ NAME=vehicle_tracking`` runs the study; what it found is in ``results`` and read
 """
 
 import csv
+from collections.abc import Iterable
 from dataclasses import fields
-from functools import cache
+from functools import cache, partial
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from scipy.special import ndtr
 
-from ... import _checks, _records
+from ... import _checks
 from ..._data import read_lines, results
+from ..._hints import Index, Positive, checked
+from ..._records import record
+from ..._typing import FloatArray
 from ...model.polar_radar import polar_radar_h
 from ...tracking.association import gnn_assign
 from ...tracking.management import TrackManager
-from . import chain, polar
-from .published import paths, settings
+from . import processing
+from .processing import VehicleScan
+from .published import reported
+from .settings import automotive_settings
+from .truth import Truth, vehicle_paths
 
 RUNS = 200
 SEED = 6
-NEAR = chain.LENGTH  # m: a track that is farther from the middle of the target has lost it
-VARIANTS = {
+NEAR = processing.LENGTH  # m: a track that is farther from the middle of the target has lost it
+VARIANTS: dict[str, dict[str, Any]] = {
     "as in Fig 6": {},
     "rule for new tracks only": {"rule": "new tracks only"},
     "no clutter rule": {"rule": "never"},
@@ -31,6 +39,11 @@ VARIANTS = {
     "pedestrian as in Fig 6": {"points": 1},
     "pedestrian with rule for new tracks only": {"points": 1, "rule": "new tracks only"},
 }
+Figure = Literal[7, 8, 9, 10, 11]
+Variant = Literal[
+    "as in Fig 6", "rule for new tracks only", "no clutter rule", "Hungarian", "8 hits of 10",
+    "pedestrian as in Fig 6", "pedestrian with rule for new tracks only",
+]  # fmt: skip
 # Figures that a variant is run on, if not on all: those whose target moves at 5 km/h and may be a
 # pedestrian, and one that the clutter rule leaves alone.
 ONLY = {
@@ -41,8 +54,9 @@ ONLY = {
 }
 
 
-@_records.record
-class Outcome:
+@checked
+@record
+class SchemeOutcome:
     """What the scheme made of one record.
 
     Attributes
@@ -66,18 +80,19 @@ class Outcome:
         Tracks begun, most of which are never confirmed.
     """
 
-    held: int
-    first: int
-    breaks: int
-    tracks: int
-    error: float
-    false: int
-    false_scans: int
-    begun: int
+    held: Index
+    first: Index
+    breaks: Index
+    tracks: Index
+    error: Annotated[float, partial(_checks.one_number, check=_checks.real)]
+    false: Index
+    false_scans: Index
+    begun: Index
 
 
-@_records.record
-class Counts:
+@checked
+@record
+class DetectionCounts:
     """How many detections of one record there are, and how many the clutter rule calls clutter.
 
     Attributes
@@ -88,13 +103,14 @@ class Counts:
         Detections of what stands still.
     """
 
-    target: int
-    target_deleted: int
-    clutter: int
-    clutter_deleted: int
+    target: Index
+    target_deleted: Index
+    clutter: Index
+    clutter_deleted: Index
 
 
-def variants(figure):
+@checked
+def study_variants(figure: Figure) -> list[str]:
     """Return the names of the variants that are run on a path.
 
     Parameters
@@ -105,11 +121,22 @@ def variants(figure):
     Returns
     -------
     list of str
+
+    Raises
+    ------
+    ValueError
+        If `figure` is none of them.
+
+    Examples
+    --------
+    >>> study_variants(7)
+    ['as in Fig 6', 'rule for new tracks only', 'Hungarian']
     """
     return [name for name in VARIANTS if figure in ONLY.get(name, (figure,))]
 
 
-def record(figure, run, variant="as in Fig 6"):
+@checked
+def study_record(figure: Figure, run: Index, variant: Variant = "as in Fig 6") -> list[VehicleScan]:
     """Return the scans of one record of the study.
 
     Parameters
@@ -119,42 +146,64 @@ def record(figure, run, variant="as in Fig 6"):
     run : int
         Number of the run.
     variant : str
-        One of `VARIANTS`. All that have the same target get the same scans.
+        One of `study_variants` of any figure. All that have the same target get the same scans.
 
     Returns
     -------
-    list of Scan
-    """
-    rng = np.random.default_rng([SEED, figure, run])
-    points = VARIANTS[variant].get("points", chain.POINTS)
-    return chain.simulate(paths()[figure].truth, rng=rng, points=points)
-
-
-def outcome(scans, truth, variant="as in Fig 6"):
-    """Process a record and say what became of the target.
-
-    Parameters
-    ----------
-    scans : sequence of Scan
-        From `chain.simulate`.
-    truth : ndarray, shape (K, 4)
-        True states of the target.
-    variant : str
-        One of `VARIANTS`.
-
-    Returns
-    -------
-    Outcome
+    list of VehicleScan
 
     Raises
     ------
     ValueError
-        If `variant` is unknown.
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> len(study_record(7, 0))
+    500
     """
-    _checks.one_of("variant", variant, tuple(VARIANTS))
+    rng = np.random.default_rng([SEED, figure, run])
+    points = VARIANTS[variant].get("points", processing.POINTS)
+    return processing.simulate_scans(vehicle_paths()[figure].truth, rng=rng, points=points)
+
+
+@checked
+def study_outcome(
+    scans: Iterable[VehicleScan], truth: Truth, variant: Variant = "as in Fig 6"
+) -> SchemeOutcome:
+    """Process a record and say what became of the target.
+
+    Parameters
+    ----------
+    scans : iterable of VehicleScan
+        From `simulate_scans`.
+    truth : array_like, shape (K, 4)
+        True states of the target.
+    variant : str
+        See `study_variants`.
+
+    Returns
+    -------
+    SchemeOutcome
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described, or there is not one scan for each true state.
+
+    Examples
+    --------
+    >>> truth = np.linspace([0.0, 0.0, 5.0, 2.0], [0.0, 0.0, 5.8, 2.0], 11)
+    >>> scans = processing.simulate_scans(truth, rng=np.random.default_rng(1))
+    >>> study_outcome(scans, truth).tracks
+    1
+    """
+    scans = tuple(scans)
+    if len(scans) != len(truth):
+        raise ValueError(f"scans must be {len(truth)} as true states, got {len(scans)}")
     options = {name: value for name, value in VARIANTS[variant].items() if name != "points"}
-    tracks = chain.run(scans, **options)
-    kept = chain.after_rule(scans, options.get("rule", "always"))
+    tracks = processing.track_objects(scans, **options)
+    kept = processing.after_clutter_rule(scans, options.get("rule", "always"))
     own = [_of_target(scan) for scan in kept]
     good, false = [], []
     for track in tracks:
@@ -168,7 +217,7 @@ def outcome(scans, truth, variant="as in Fig 6"):
     near = distance <= NEAR
     held = near.any(axis=0)
     oldest = distance[near.argmax(axis=0), np.arange(len(scans))][held]
-    return Outcome(
+    return SchemeOutcome(
         held=int(held.sum()),
         first=int(held.argmax()) if held.any() else len(scans),
         breaks=int(np.sum(held[:-1] & ~held[1:])),
@@ -182,8 +231,8 @@ def outcome(scans, truth, variant="as in Fig 6"):
 
 def _of_target(scan):
     """Return which objects of a scan hold more detections of the target than others."""
-    means, member = chain.objects(scan.z)
-    votes = np.bincount(member, scan.source == chain.TARGET, len(means))
+    means, member = processing.group_detections(scan.z)
+    votes = np.bincount(member, scan.source == processing.TARGET, len(means))
     return votes > np.bincount(member, minlength=len(means)) / 2
 
 
@@ -194,32 +243,48 @@ def _mostly(track, own):
     return np.mean([own[scan][detection] for scan, detection in pairs]) > 0.5
 
 
-def counts(scans):
+@checked
+def count_detections(scans: Iterable[VehicleScan]) -> DetectionCounts:
     """Count the detections of a record, and those that the clutter rule deletes.
 
     Parameters
     ----------
-    scans : sequence of Scan
-        From `chain.simulate`.
+    scans : iterable of VehicleScan
+        From `simulate_scans`.
 
     Returns
     -------
-    Counts
+    DetectionCounts
+
+    Raises
+    ------
+    ValueError
+        If there is no scan.
+
+    Examples
+    --------
+    >>> scan = VehicleScan([[5.0, 0.0, 1.0], [5.0, 0.0, 0.1]], [0, 1])
+    >>> count_detections([scan])
+    DetectionCounts(target=1, target_deleted=0, clutter=1, clutter_deleted=1)
     """
+    scans = tuple(scans)
+    if not scans:
+        raise ValueError("scans must be one or more, got none")
     z = np.concatenate([scan.z for scan in scans])
     source = np.concatenate([scan.source for scan in scans])
-    slow = ~chain.moves(z)
-    target, clutter = source == chain.TARGET, source == chain.CLUTTER
+    slow = ~processing.is_moving(z)
+    target, clutter = source == processing.TARGET, source == processing.CLUTTER
     numbers = (target, target & slow, clutter, clutter & slow)
-    return Counts(*(int(one.sum()) for one in numbers))
+    return DetectionCounts(*(int(one.sum()) for one in numbers))
 
 
-def deleted_share(truth=None, limit=None):
-    """Predict the share of the detections that the clutter rule deletes.
+@checked
+def deleted_fraction(truth: Truth | None = None, limit: Positive | None = None) -> float:
+    """Predict the fraction of the detections that the clutter rule deletes.
 
     Parameters
     ----------
-    truth : ndarray, shape (K, 4), optional
+    truth : array_like, shape (K, 4), optional
         True states of the middle of the target; if None, that of what stands still.
     limit : float, optional
         Range rate in m/s below which a detection is deleted; that of the data file if None.
@@ -229,40 +294,64 @@ def deleted_share(truth=None, limit=None):
     float
         Mean, over scans and reflection points, of the probability that the noise leaves the range
         rate within the limit.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described, or a point is on the radar.
+
+    Examples
+    --------
+    >>> round(deleted_fraction(), 2)
+    0.9
     """
-    radar = polar.sensor()
-    limit = radar["v_min"] if limit is None else limit
-    rate = np.zeros(1) if truth is None else polar_radar_h(chain.reflection_points(truth))[..., 2]
-    ends = [(sign * limit - rate) / radar["sigma_rate"] for sign in (1, -1)]
+    radar = reported().scenario.polar
+    limit = radar.v_min if limit is None else limit
+    rate = (
+        np.zeros(1) if truth is None else polar_radar_h(processing.reflection_points(truth))[..., 2]
+    )
+    ends = [(sign * limit - rate) / radar.sigma_rate for sign in (1, -1)]
     return float(np.mean(ndtr(ends[0]) - ndtr(ends[1])))
 
 
 @cache
-def outcomes():
+def saved_outcomes() -> dict[tuple[int, str], dict[str, FloatArray]]:
     """Return what the study found.
 
     Returns
     -------
     dict of tuple (figure, variant) to dict of str to ndarray, shape (runs,)
-        For each attribute of `Outcome` its values in all runs, as floats.
+        For each attribute of `SchemeOutcome` its values in all runs, as floats; an error may be
+        NaN.
+
+    Examples
+    --------
+    >>> len(saved_outcomes()[7, "Hungarian"]["held"])
+    200
     """
-    return _read("vehicle_tracking.tracks.csv", ("figure", "variant"), Outcome)
+    return _read("vehicle_tracking.tracks.csv", ("figure", "variant"), SchemeOutcome)
 
 
 @cache
-def detections():
+def saved_detections() -> dict[int, dict[str, FloatArray]]:
     """Return what the study counted.
 
     Returns
     -------
     dict of int to dict of str to ndarray, shape (runs,)
-        For each figure and each attribute of `Counts` its values in all runs, as floats.
+        For each figure and each attribute of `DetectionCounts` its values in all runs, as floats.
+
+    Examples
+    --------
+    >>> len(saved_detections()[7]["target"])
+    200
     """
-    by_figure = _read("vehicle_tracking.detections.csv", ("figure",), Counts)
+    by_figure = _read("vehicle_tracking.detections.csv", ("figure",), DetectionCounts)
     return {figure: values for (figure,), values in by_figure.items()}
 
 
-def summary(figure, variant):
+@checked
+def outcome_summary(figure: Figure, variant: Variant) -> dict[str, np.ndarray]:
     """Return what a table of the study shows, run by run.
 
     Parameters
@@ -270,15 +359,26 @@ def summary(figure, variant):
     figure : int
         Number of the figure, 7 to 11.
     variant : str
-        One of `variants` of it.
+        One of `study_variants` of it.
 
     Returns
     -------
     dict of str to ndarray, shape (runs,)
         Numbers, and booleans where the share of the records is of interest. Errors are those of
         the records in which the target was tracked at all.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described, or the variant is none of the figure.
+
+    Examples
+    --------
+    >>> len(outcome_summary(7, "Hungarian"))
+    7
     """
-    s, one = settings(), outcomes()[figure, variant]
+    _checks.one_of("variant", variant, tuple(study_variants(figure)))
+    s, one = automotive_settings(), saved_outcomes()[figure, variant]
     return {
         "no track, % of scans": 100 * (1 - one["held"] / s.samples),
         "track within 1 s": one["first"] * s.T <= 1,

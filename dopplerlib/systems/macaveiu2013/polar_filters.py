@@ -1,30 +1,48 @@
 """What the radar of Section III measures, range, azimuth and range rate, and two filters for it."""
 
+from typing import Annotated
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Runs, checked, exactly, shaped
+from ..._typing import FloatArray
 from ...estimation import gaussian, recursion
 from ...estimation.extended_update import linearized
 from ...estimation.track import Track
 from ...model.motion import ncv_transition
 from ...model.polar_radar import polar_position, polar_radar_h, polar_radar_jacobian
-from .published import sensor, settings
+from .published import reported
+from .settings import AutomotiveSettings, automotive_settings
+from .truth import Truth
 
 SIDEWAYS = 3.0  # m/s: deviation of the velocity across the line of sight before it is known; ours
+Record = Annotated[FloatArray, exactly(None, None, 3, check=_checks.measured)]
 
 
-def noise():
-    """Return the covariance of range, azimuth and range rate, shape (3, 3)."""
-    radar = sensor()
-    return np.diag([radar["sigma_r"], radar["sigma_phi"], radar["sigma_rate"]]) ** 2
+def polar_noise() -> FloatArray:
+    """Return the covariance of range, azimuth and range rate.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+
+    Examples
+    --------
+    >>> np.sqrt(np.diag(polar_noise())).tolist()
+    [0.25, 0.0175, 0.1]
+    """
+    radar = reported().scenario.polar
+    return np.diag([radar.sigma_r, radar.sigma_phi, radar.sigma_rate]) ** 2
 
 
-def measure(truth, runs, *, rng):
+@checked
+def measure_polar(truth: Truth, runs: Runs, *, rng: np.random.Generator) -> FloatArray:
     """Return polar measurements of a path, with noise.
 
     Parameters
     ----------
-    truth : ndarray, shape (K, 4)
+    truth : array_like, shape (K, 4)
         True states [x, v_x, y, v_y].
     runs : int
         Number of independent records.
@@ -39,21 +57,29 @@ def measure(truth, runs, *, rng):
     Raises
     ------
     ValueError
-        If `runs` is not a positive whole number, or `rng` is not a generator.
+        If an argument is not of the kind described, a target is on the radar, or the records would
+        have more than ten million samples.
+
+    Examples
+    --------
+    >>> measure_polar([[0.0, 0.0, 5.0, 0.0]] * 4, 2, rng=np.random.default_rng(1)).shape
+    (2, 4, 3)
     """
-    runs = _checks.whole_number("runs", runs)
-    _checks.generator("rng", rng)
+    _checks.count("runs times samples", runs * len(truth), 10**7)
     seen = polar_radar_h(truth)
     draws = np.stack([child.standard_normal(seen.shape) for child in rng.spawn(runs)])
-    return seen + draws * np.sqrt(np.diag(noise()))
+    return seen + draws * np.sqrt(np.diag(polar_noise()))
 
 
-def start(z):
+@checked
+def start_polar(
+    z: Annotated[FloatArray, shaped(3)],
+) -> tuple[FloatArray, FloatArray]:
     """Return state and covariance from one polar measurement.
 
     Parameters
     ----------
-    z : ndarray, shape (..., 3)
+    z : array_like, shape (..., 3)
         Range, azimuth and range rate.
 
     Returns
@@ -61,8 +87,19 @@ def start(z):
     x : ndarray, shape (..., 4)
         The velocity across the line of sight is zero, for lack of knowledge.
     P : ndarray, shape (..., 4, 4)
+
+    Raises
+    ------
+    ValueError
+        If `z` is not of the kind described.
+
+    Examples
+    --------
+    >>> x, P = start_polar([5.0, 0.0, 1.0])
+    >>> x.tolist()
+    [0.0, 0.0, 5.0, 1.0]
     """
-    R = noise()
+    R = polar_noise()
     r, azimuth, rate = np.moveaxis(z, -1, 0)
     along = np.stack([np.sin(azimuth), np.cos(azimuth)], axis=-1)
     across = np.stack([np.cos(azimuth), -np.sin(azimuth)], axis=-1)
@@ -84,14 +121,15 @@ def start(z):
     return x, P
 
 
-def ekf(z, s=None):
+@checked
+def track_polar(z: Record, s: AutomotiveSettings | None = None) -> Track:
     """Track with range, azimuth and range rate as they are: an extended Kalman filter.
 
     Parameters
     ----------
-    z : ndarray, shape (runs, K, 3)
+    z : array_like, shape (runs, K, 3)
         Polar measurements; NaN where a scan has none, but for the first one, which is the start.
-    s : Settings, optional
+    s : AutomotiveSettings, optional
         Motion model; those of the data file if None.
 
     Returns
@@ -101,27 +139,34 @@ def ekf(z, s=None):
     Raises
     ------
     ValueError
-        If a first measurement is not finite.
+        If an argument is not of the kind described, or a first measurement is not finite.
+
+    Examples
+    --------
+    >>> z = [[[5.0, 0.0, 1.0], [5.04, 0.0, 1.0], [np.nan, np.nan, np.nan]]]
+    >>> track_polar(z).updated.tolist()
+    [[False, True, False]]
     """
-    s = settings() if s is None else s
+    s = automotive_settings() if s is None else s
     _checks.finite("z[:, 0], where the track starts,", z[:, 0], (3,))
-    R = noise()
+    R = polar_noise()
 
     def model(x, z):
         innovation, J = linearized(x, z, polar_radar_h, polar_radar_jacobian, wrap=(1,))
         return innovation, J, R
 
-    return _track(z, s, start(z[:, 0]), model)
+    return _track(z, s, start_polar(z[:, 0]), model)
 
 
-def naive(z, s=None):
+@checked
+def track_polar_naive(z: Record, s: AutomotiveSettings | None = None) -> Track:
     """Track with the range rate taken for the velocity: the filter of Eqs 4 to 6 fed by a radar.
 
     Parameters
     ----------
-    z : ndarray, shape (runs, K, 3)
+    z : array_like, shape (runs, K, 3)
         Polar measurements, none missing.
-    s : Settings, optional
+    s : AutomotiveSettings, optional
         Those of the data file if None.
 
     Returns
@@ -131,29 +176,36 @@ def naive(z, s=None):
     Raises
     ------
     ValueError
-        If a measurement is not finite.
+        If an argument is not of the kind described, or a measurement is not finite.
 
     Notes
     -----
     H = I asks for v_x and v_y. A radar has the range rate only; here it is turned into a vector
     along the line of sight. E_z is the polar noise at the place of the target, turned into x and y.
+
+    Examples
+    --------
+    >>> track_polar_naive([[[5.0, 0.0, 1.0], [5.04, 0.0, 1.0]]]).x.shape
+    (1, 2, 4)
     """
-    s = settings() if s is None else s
+    s = automotive_settings() if s is None else s
     z = _checks.finite("z", z, (None, 3))
+    if not z[..., 0].all():
+        raise ValueError("z must keep clear of the radar, got a range of 0")
     along = polar_position(z) / z[..., :1]
     full = np.zeros((*z.shape[:-1], 4))
     full[..., ::2] = polar_position(z)
     full[..., 1::2] = z[..., 2:] * along
-    radar = sensor()
+    radar = reported().scenario.polar
 
     def model(x, both):
         cartesian, seen = both[..., :4], both[..., 4:]
-        _, E_z = start(seen)
+        _, E_z = start_polar(seen)
         # Whoever takes the vector for the velocity takes it to be as good across as along.
-        E_z[..., 1::2, 1::2] = radar["sigma_rate"] ** 2 * np.eye(2)
+        E_z[..., 1::2, 1::2] = radar.sigma_rate**2 * np.eye(2)
         return cartesian - x, np.eye(4), E_z
 
-    return _track(np.concatenate([full, z], axis=-1), s, start(z[:, 0]), model)
+    return _track(np.concatenate([full, z], axis=-1), s, start_polar(z[:, 0]), model)
 
 
 def _track(z, s, begin, model):
@@ -168,4 +220,5 @@ def _track(z, s, begin, model):
 
     first = (*begin, np.full(len(z), np.nan))
     x, P, score = recursion.scan(step, begin, range(1, z.shape[1]), axis=1, first=first)
+    _checks.estimates("z, s", x, P)
     return Track(x, P, None, None, score, np.isfinite(score))

@@ -1,22 +1,32 @@
 """Comparisons of trackers beyond those of the thesis."""
 
+from typing import Annotated
+
 import numpy as np
 
-from ... import _checks
+from ..._hints import Positive, Real, Runs, checked, exactly
+from ..._typing import FloatArray
 from ...evaluation.bootstrap import bootstrap_interval
-from .in_the_plane import central_filter
-from .measures import distance_error, rmse_interval, usable_interval
-from .published import scenario, settings
-from .scene import simulate, straight_track
-from .two_radars import filter_then_triangulate
+from ...evaluation.intervals import ConfidenceInterval
+from .cartesian_tracker import central_filter
+from .measures import position_errors, rmse_interval, usable_interval
+from .position_tracker import PositionTrack, filter_then_bilaterate
+from .published import reported
+from .scene import RadarRecords, simulate_radars, straight_track
+from .settings import filter_settings
+
+Values = Annotated[FloatArray, exactly(None)]
 
 
-def usable_ranges(records, tracks, *, rng):
+@checked
+def usable_ranges(
+    records: RadarRecords, tracks: dict[str, PositionTrack], *, rng: np.random.Generator
+) -> dict[str, ConfidenceInterval]:
     """Return the usable range of several trackers on the same records.
 
     Parameters
     ----------
-    records : Records
+    records : RadarRecords
         What both radars measured.
     tracks : dict of str to PositionTrack
         Trackers by label.
@@ -27,16 +37,36 @@ def usable_ranges(records, tracks, *, rng):
     -------
     dict of str to ConfidenceInterval
         In m; infinite if the error stays below the limit.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> from dopplerlib.systems.asheim2015 import raw_positions
+    >>> records = simulate_radars(2, rng=np.random.default_rng(1))
+    >>> tracks = {"measured": raw_positions(records)}
+    >>> print(usable_ranges(records, tracks, rng=np.random.default_rng(2))["measured"])
+    4.33 (4.23 to 4.33)
     """
     return {
         label: usable_interval(
-            distance_error(track.p, records.truth), records.time, records.distance, rng=rng
+            position_errors(track.p, records.truth), records.time, records.distance, rng=rng
         )
         for label, track in tracks.items()
     }
 
 
-def late_radar(offsets, runs, *, rng, window=(25.0, 30.0)):
+@checked
+def late_radar(
+    offsets: Values,
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    window: tuple[Real, Real] = (25.0, 30.0),
+) -> dict[str, list[ConfidenceInterval]]:
     """Return position errors if the second radar measures later, known to the tracker or not.
 
     Parameters
@@ -56,10 +86,20 @@ def late_radar(offsets, runs, *, rng, window=(25.0, 30.0)):
         Root mean square errors in m by tracker, one for each offset, with one scan a second.
         Errors are taken at the time of the second radar's measurement if the tracker knows it,
         and of the first one's if not.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> found = late_radar([0.5], 2, rng=np.random.default_rng(1))
+    >>> len(found)
+    4
     """
-    offsets = _checks.finite("offsets", offsets, (None,))
-    T = scenario()["real"]["T"]
-    own = settings("modern", T)
+    T = reported().scenario.real.T
+    own = filter_settings("modern", T)
     names = (
         "apart, delay ignored",
         "one filter, delay ignored",
@@ -68,27 +108,35 @@ def late_radar(offsets, runs, *, rng, window=(25.0, 30.0)):
     )
     found = {name: [] for name in names}
     for offset, child in zip(offsets, rng.spawn(len(offsets)), strict=True):
-        records = simulate(runs, rng=child, T=T, offset=float(offset), rate="exact")
+        records = simulate_radars(runs, rng=child, T=T, offset=float(offset), rate="exact")
         ignorant = records.with_offset(0.0)
         then = (records.time >= window[0]) & (records.time <= window[1])
         later = straight_track(records.time + offset)
         for name, track, truth in zip(
             names,
             (
-                filter_then_triangulate(records, own),
+                filter_then_bilaterate(records, own),
                 central_filter(ignorant, own),
-                filter_then_triangulate(records, own, advance=True),
+                filter_then_bilaterate(records, own, advance=True),
                 central_filter(records, own),
             ),
             (records.truth, records.truth, later, later),
             strict=True,
         ):
-            squares = np.mean(distance_error(track.p, truth)[:, then] ** 2, axis=1)
+            squares = np.mean(position_errors(track.p, truth)[:, then] ** 2, axis=1)
             found[name].append(bootstrap_interval(np.sqrt, [squares], rng=child))
     return found
 
 
-def baseline_sweep(baselines, runs, *, rng, at=28.0, half_width=2.0):
+@checked
+def baseline_sweep(
+    baselines: Values,
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    at: Positive = 28.0,
+    half_width: Positive = 2.0,
+) -> dict[str, list[ConfidenceInterval]]:
     """Return position errors of two trackers for several distances between the radars.
 
     Parameters
@@ -107,24 +155,43 @@ def baseline_sweep(baselines, runs, *, rng, at=28.0, half_width=2.0):
     dict of str to list of ConfidenceInterval
         Root mean square errors in m by tracker, one for each baseline, with one scan a second and
         "modern" settings.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> found = baseline_sweep([0.6], 2, rng=np.random.default_rng(1), at=5.0)
+    >>> list(found)
+    ['filter then triangulate', 'one filter for both']
     """
-    baselines = _checks.finite("baselines", baselines, (None,))
-    T = scenario()["real"]["T"]
-    own = settings("modern", T)
+    T = reported().scenario.real.T
+    own = filter_settings("modern", T)
     found = {"filter then triangulate": [], "one filter for both": []}
     for baseline, child in zip(baselines, rng.spawn(len(baselines)), strict=True):
-        records = simulate(
+        records = simulate_radars(
             runs, rng=child, T=T, duration=at + half_width, baseline=float(baseline), rate="exact"
         )
-        tracks = filter_then_triangulate(records, own), central_filter(records, own)
+        tracks = filter_then_bilaterate(records, own), central_filter(records, own)
         for values, track in zip(found.values(), tracks, strict=True):
-            error = distance_error(track.p, records.truth)
+            error = position_errors(track.p, records.truth)
             values.append(rmse_interval(error, records.time, at, half_width, rng=child))
     return found
 
 
-def refused_scans(starts, densities, runs, *, rng, duration=10.0, floor=(0.0, 0.0)):
-    """Return how much of a radar the gate of a single filter refuses after a start at rest.
+@checked
+def rejected_scans(
+    starts: Values,
+    densities: Values,
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    duration: Positive = 10.0,
+    floor: tuple[Real, Real] | None = (0.0, 0.0),
+) -> list[list[ConfidenceInterval]]:
+    """Return the fraction of scans that the gate of a single filter rejects after a start at rest.
 
     Parameters
     ----------
@@ -144,18 +211,25 @@ def refused_scans(starts, densities, runs, *, rng, duration=10.0, floor=(0.0, 0.
     Returns
     -------
     list of list of ConfidenceInterval
-        Shares of the scans of radar 2 that the gate dropped, for each start and density.
+        Fractions of the scans of radar 2 that the gate rejected, for each start and density.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> (row,) = rejected_scans([0.1], [1e-3, 1e-2], 2, rng=np.random.default_rng(1), duration=1.0)
+    >>> len(row)
+    2
     """
-    starts, densities = (
-        _checks.finite(name, values, (None,))
-        for name, values in (("starts", starts), ("densities", densities))
-    )
-    records = simulate(runs, rng=rng, duration=duration, rate="exact")
+    records = simulate_radars(runs, rng=rng, duration=duration, rate="exact")
     found = []
     for y in starts:
         row = []
         for q in densities:
-            own = settings("modern", q=float(q), floor=floor)
+            own = filter_settings("modern", q=float(q), floor=floor)
             used = central_filter(records, own, start=[0.0, y, 0.0, 0.0]).updated[:, 1]
             row.append(bootstrap_interval(np.positive, [(~used).mean(axis=1)], rng=rng))
         found.append(row)

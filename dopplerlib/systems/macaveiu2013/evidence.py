@@ -2,19 +2,23 @@
 
 import numpy as np
 
-from ... import _checks
+from ..._hints import checked
 from ...evaluation.intervals import mean_interval, proportion_interval, quantile_interval
 from ...model.polar_radar import polar_radar_jacobian
 from ...replication.readings import Readings
 from ...signal import fsk, waveforms
-from . import chain, chain_study, crossing, lag, polar, regions, signals, tracking
-from .published import KMH, paths, settings
+from . import claim_regions, lag_prediction, linear_filter, processing, processing_study, signals
+from .crossing import crossing_paths, track_crossing
+from .published import KMH, reported
+from .settings import automotive_settings
+from .truth import vehicle_paths
 
 RUNS = 200
 NOISES = (0.25, 0.5, 2.0)  # m: readings of a noise that is called large and not stated
 
 
-def evidence(*, rng):
+@checked
+def evidence(*, rng: np.random.Generator) -> dict:
     """Return our number for every claim of ``claims.toml``.
 
     Parameters
@@ -32,7 +36,6 @@ def evidence(*, rng):
     ValueError
         If `rng` is not a generator.
     """
-    _checks.generator("rng", rng)
     signals, positions, filters, others = rng.spawn(4)
     return (
         _waveforms(signals) | _positions(positions) | _filter(filters) | _scheme() | _others(others)
@@ -40,7 +43,7 @@ def evidence(*, rng):
 
 
 def _waveforms(rng):
-    s, radar = settings(), settings().radar
+    s, radar = automotive_settings(), automotive_settings().radar
     targets = np.array([[30.0, -5.0], [40.0, 4.0]])
     relations = _relations((1, -1))
     pairs, _ = waveforms.chirp_intersections(relations, [targets @ row for row in relations])
@@ -48,7 +51,7 @@ def _waveforms(rng):
     shared = np.array([targets[0], [44.0, (A[0] @ targets[0] - A[0, 0] * 44.0) / A[0, 1]]])
 
     def mfsk_off(case, count):
-        pair = [signals.noisy(one, 20, rng=rng) for one in fsk.mfsk_beats(radar, case)]
+        pair = [signals.noisy_echoes(one, 20, rng=rng) for one in fsk.mfsk_beats(radar, case)]
         return np.abs(fsk.mfsk_solve(radar, *pair, count)[0, 0] - case[:, 0]).min()
 
     def fsk_off(v):
@@ -57,7 +60,7 @@ def _waveforms(rng):
 
     def seen(case, chirps=512):
         signal = waveforms.rapid_chirps(radar, case, chirps=chirps)
-        return waveforms.range_doppler_map(radar, signals.noisy(signal, 0, rng=rng))
+        return waveforms.range_doppler_map(radar, signals.noisy_echoes(signal, 0, rng=rng))
 
     speed = {
         f"{chirps} chirps in a measurement": waveforms.strongest_cell(
@@ -89,7 +92,7 @@ def _waveforms(rng):
 
 
 def _relations(slopes):
-    s = settings()
+    s = automotive_settings()
     return np.stack([waveforms.chirp_relation(s.radar, a * s.bandwidth / s.T) for a in slopes])
 
 
@@ -99,28 +102,32 @@ def _slopes_needed(targets):
     for number in range(2, len(rows) + 1):
         some = rows[:number]
         _, misfit = waveforms.chirp_intersections(some, [targets @ row for row in some])
-        if np.sum(misfit < 0.5 / settings().T) == len(targets):
+        if np.sum(misfit < 0.5 / automotive_settings().T) == len(targets):
             return number
     raise ValueError(f"SLOPES are too few for {len(targets)} targets")
 
 
 def _positions(rng):
-    s = settings()
+    s = automotive_settings()
     children = iter(rng.spawn(len(NOISES) + 2))
     scores = {
-        f"noise of {p:g} m": regions.scores(RUNS, rng=next(children), s=s.with_(sigma_p=p))
+        f"noise of {p:g} m": claim_regions.score_paths(
+            RUNS, rng=next(children), s=s.with_(sigma_x=p)
+        )
         for p in NOISES
     }
-    agile = regions.scores(RUNS, rng=next(children), s=s.with_(w=0.1))
-    calm = regions.scores(RUNS, rng=next(children), s=s)
-    seven = {name: quantile_interval(one.settled[0], regions.MOST) for name, one in scores.items()}
+    agile = claim_regions.score_paths(RUNS, rng=next(children), s=s.with_(w=0.1))
+    calm = claim_regions.score_paths(RUNS, rng=next(children), s=s)
+    seven = {
+        name: quantile_interval(one.settled[0], claim_regions.MOST) for name, one in scores.items()
+    }
     whole = calm.whole.max(axis=0)
     largest = {name: one.settled.max(axis=0) for name, one in scores.items()}
-    every = {name: quantile_interval(one, regions.MOST) for name, one in largest.items()}
+    every = {name: quantile_interval(one, claim_regions.MOST) for name, one in largest.items()}
     return {
         "fig7-error": Readings(seven),
         "all-below-resolution": Readings(
-            every | {"with the first second": quantile_interval(whole, regions.MOST)}
+            every | {"with the first second": quantile_interval(whole, claim_regions.MOST)}
         ),
         "varying-speed": Readings(
             {
@@ -133,14 +140,16 @@ def _positions(rng):
 
 def _filter(rng):
     """Compare filters with other covariances, on the same noise."""
-    s, five = settings(), paths()
+    s, five = automotive_settings(), vehicle_paths()
     smoother = s.with_(w=s.w / np.sqrt(10))  # the gains of a tenfold E_z
-    best = s.with_(w=lag.best_w(10 * KMH / (s.samples * s.T)))
+    best = s.with_(w=lag_prediction.best_w(10 * KMH / (s.samples * s.T)))
     noise, slope = rng.integers(2**32, size=2)
 
     def errors(figure, seed, one):
         again = np.random.default_rng(seed)
-        return tracking.errors([five[figure]], RUNS, rng=again, s=one)[0, :, s.skip :, 1]
+        return linear_filter.tracking_errors([five[figure]], RUNS, rng=again, s=one)[
+            0, :, s.skip :, 1
+        ]
 
     def rms(error):
         return np.sqrt(np.mean(error**2, axis=1))
@@ -150,7 +159,7 @@ def _filter(rng):
     left = [rms(one[:, end]) for one in (errors(7, noise, smoother), calm)]
     behind = [np.mean(one[:, end], axis=1) for one in (errors(10, slope, smoother), turning)]
     v_x = calm.mean()  # the truth is zero
-    still = tracking.filtered(five[7].truth)[:, 1]
+    still = linear_filter.filter_vehicle(five[7].truth)[:, 1]
     return {
         "fig7-lateral": Readings(
             {"without noise": float(np.abs(still).max()), "mean of 200 runs": float(v_x)}
@@ -163,9 +172,9 @@ def _filter(rng):
 
 def _scheme():
     """Read what the saved study found."""
-    found, counted = chain_study.outcomes(), chain_study.detections().values()
-    plain = {figure: found[figure, "as in Fig 6"] for figure in paths()}
-    samples = settings().samples
+    found, counted = processing_study.saved_outcomes(), processing_study.saved_detections().values()
+    plain = {figure: found[figure, "as in Fig 6"] for figure in vehicle_paths()}
+    samples = automotive_settings().samples
 
     def least(variant):
         held = [one["held"] / samples for key, one in found.items() if key[1] == variant]
@@ -177,7 +186,9 @@ def _scheme():
         "clutter-removed": Readings(
             {
                 "limit of one resolution cell": mean_interval(gone),
-                "limit of three deviations": chain_study.deleted_share(limit=3 * _rate_noise()),
+                "limit of three deviations": processing_study.deleted_fraction(
+                    limit=3 * _rate_noise()
+                ),
             }
         ),
         "false-candidates": mean_interval(wrong),
@@ -197,16 +208,16 @@ def _scheme():
 
 
 def _rate_noise():
-    return polar.sensor()["sigma_rate"]
+    return reported().scenario.polar.sigma_rate
 
 
 def _others(rng):
-    s, five = settings(), paths()
+    s, five = automotive_settings(), vehicle_paths()
     children = iter(rng.spawn(4))
 
     def wrong(angle, rule, which):
-        truth = crossing.paths(angle)
-        out = crossing.follow(truth, rule, RUNS, rng=next(children), velocity=which == "lost")
+        truth = crossing_paths(angle)
+        out = track_crossing(truth, rule, RUNS, rng=next(children), velocity=which == "lost")
         return getattr(out, which).astype(float)
 
     lost = wrong(0.2, "Hungarian", "lost") - wrong(0.2, "each its nearest", "lost")
@@ -230,7 +241,7 @@ def _others(rng):
             }
         ),
         "all-measured": float(np.linalg.matrix_rank(polar_radar_jacobian(five[9].truth[0]))),
-        "slow-is-clutter": float(chain.hidden(five[8].truth).sum()),
+        "slow-is-clutter": float(processing.hidden_scans(five[8].truth).sum()),
         "hungarian": Readings(
             {
                 "tracks on one target, against each its nearest": mean_interval(lost),

@@ -24,17 +24,17 @@ def test_without_a_delay_knowing_it_changes_nothing():
 
 
 def test_the_usable_range_is_that_of_each_tracker():
-    records = thesis.simulate(30, rng=np.random.default_rng(3))
+    records = thesis.simulate_radars(30, rng=np.random.default_rng(3))
     raw = thesis.raw_positions(records)
     found = thesis.usable_ranges(records, {"raw": raw}, rng=np.random.default_rng(4))["raw"]
-    error = thesis.distance_error(raw.p, records.truth)
+    error = thesis.position_errors(raw.p, records.truth)
     assert found.value == thesis.usable_range(error, records.time, records.distance)
     assert found.low <= found.value <= found.high
 
 
 def test_the_bound_of_a_scan_is_attained_by_measured_positions():
     """At 2.8 m, 2000 runs: within 5 deviations of a sample variance, by chance 1e-6."""
-    records = thesis.simulate(2000, rng=np.random.default_rng(5), duration=20.0, T=1.0)
+    records = thesis.simulate_radars(2000, rng=np.random.default_rng(5), duration=20.0, T=1.0)
     p = records.truth[-1, :2]
     C = np.cov(thesis.raw_positions(records).p[:, -1].T)
     bound = thesis.one_scan_bound(p)
@@ -56,9 +56,9 @@ def test_what_the_gate_refuses_depends_on_the_start_and_not_with_a_floor():
 
     With the floor fewer than the gate is set to lose (0.1 %) and five of its standard errors.
     """
-    (near,), (far,) = thesis.refused_scans([0.01, 0.05], [1e-4], 20, rng=np.random.default_rng(7))
+    (near,), (far,) = thesis.rejected_scans([0.01, 0.05], [1e-4], 20, rng=np.random.default_rng(7))
     assert near.high < 0.05 and far.low > 0.5
-    ((kept,),) = thesis.refused_scans([0.05], [1e-4], 20, rng=np.random.default_rng(8), floor=None)
+    ((kept,),) = thesis.rejected_scans([0.05], [1e-4], 20, rng=np.random.default_rng(8), floor=None)
     assert kept.value < 0.005
 
 
@@ -67,7 +67,7 @@ def test_without_noise_a_known_delay_leaves_no_error(monkeypatch):
 
     Filters apart lag behind the bend of the ranges by a centimeter or two.
     """
-    monkeypatch.setattr(thesis.scene, "deviations", lambda d, law=None: np.zeros((*d.shape, 2)))
+    monkeypatch.setattr(thesis.scene, "noise_std", lambda d, law=None: np.zeros((*d.shape, 2)))
     found = list(thesis.late_radar([0.5], 1, rng=np.random.default_rng(9)).values())
     for values in found[2:]:
         assert values[0].value < 0.03
@@ -75,6 +75,6 @@ def test_without_noise_a_known_delay_leaves_no_error(monkeypatch):
 
 def test_a_delay_beyond_the_next_scan_is_refused():
     for offset in (-0.1, 0.2):
-        late = thesis.simulate(1, rng=np.random.default_rng(1), duration=1, offset=offset)
-        with pytest.raises(ValueError, match="offset of the records must lie between 0 and"):
-            thesis.central_filter(late, thesis.settings("modern"))
+        late = thesis.simulate_radars(1, rng=np.random.default_rng(1), duration=1, offset=offset)
+        with pytest.raises(ValueError, match="records must have an offset from 0 to the interval"):
+            thesis.central_filter(late, thesis.filter_settings("modern"))
