@@ -3,7 +3,7 @@
 `dopplerlib.derive.ring` proves that the states of a family look alike. Here is the other half, that
 nothing else is lost: the gradient of the shift around a circle is a polynomial with five
 coefficients. And the Doppler shifts of sensors in a plane, expanded in the size of the array,
-agree to second order for a state and its twin; `dopplerlib.planar_twin` has it as numbers.
+agree to second order for a state and its twin, which `dopplerlib.model.twin` has as numbers.
 """
 
 import sympy as sp

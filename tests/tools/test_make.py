@@ -1,4 +1,4 @@
-"""Every command that a text names is there: targets of make, their NAME, and modules to run."""
+"""What a text names is there: targets of make, their NAME, modules to run, names of the library."""
 
 import re
 import subprocess
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import dopplerlib
 from dopplerlib.replication.documents import documents
 from studies.__main__ import names
 from tools.notebooks import ROOT, chapters
@@ -19,7 +20,7 @@ NAMED = {
     "study": set(names()),
     "bench": {path.stem for path in (ROOT / "benchmarks").glob("*.py")},
 }
-SUFFIXES = {"", ".cfg", ".in", ".ipynb", ".md", ".py", ".toml", ".yaml", ".yml"}
+SUFFIXES = {"", ".in", ".md", ".py", ".toml", ".yaml", ".yml"}  # chapters are texts, too
 FOLDERS = (
     ".ci .github benchmarks book data decisions dopplerlib results studies tests tools".split()
 )
@@ -30,6 +31,10 @@ COMMAND = re.compile(
     flags=re.MULTILINE,
 )
 MODULE = re.compile(r"python -m ((?:dopplerlib|studies|tests|tools)[\w.]*\w)")
+
+
+NAME = re.compile(r"`(dopplerlib(?:\.\w+)+)`")
+FILE = re.compile(rf"`((?:{'|'.join(FOLDERS[2:])})/[\w./-]*\w)`")
 
 
 def texts():
@@ -48,6 +53,23 @@ def unknown(text):
         if target not in TARGETS or (name.strip(".") and name not in NAMED.get(target, ())):
             found.append(f"make {target} {name}".strip())
     return found + [module for module in MODULE.findall(text) if find_spec(module) is None]
+
+
+def is_there(name):
+    """Return whether a dotted name leads from the library to something."""
+    value = dopplerlib
+    for part in name.split(".")[1:]:
+        value = getattr(value, part, None)
+    return value is not None
+
+
+def test_every_name_of_the_library_and_every_file_that_a_text_names_is_there():
+    found = set()
+    for path, text in texts():
+        names = [name for name in NAME.findall(text) if not is_there(name)]
+        names += [name for name in FILE.findall(text) if not (ROOT / name).exists()]
+        found |= {(path.relative_to(ROOT).as_posix(), name) for name in names}
+    assert {one for one in found if not re.search("NAME|DOCUMENT", one[1])} == set()
 
 
 def test_every_command_that_a_text_names_is_there():
