@@ -1,4 +1,4 @@
-"""From a recording to a track: the whole chain, on any array."""
+"""From a recording to a track, on any array."""
 
 from .._lazy import attach
 

@@ -43,10 +43,10 @@ def parts(box, array):
 
 
 def hypotheses(z, std, array, T, apart, boxes):
-    """Return states (runs, H, 6), chi-squares (runs, H), and deviations (runs, K, N) of the start.
+    """Return initial states (runs, H, 6), chi-squares (runs, H), and weights (runs, K, N).
 
     All shifts of a record get the same weight, so the search does not depend on how large it is.
-    A deviation is infinite where a shift is missing.
+    The weights are standard deviations, infinite where a shift is missing.
     """
     # Overlapping windows share samples, and their errors are correlated. Of every `apart` windows
     # one is taken, counted back from the last: the start is the state at its time.

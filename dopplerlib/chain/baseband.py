@@ -1,4 +1,4 @@
-"""IQ samples of an array at the rate at which they are tracked."""
+"""Baseband samples of an array, after low-pass filter and decimation."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ _SAME_WAVELENGTH = 1e-3  # relative: a difference of that scales all speeds as m
 
 @record
 class Baseband:
-    """IQ samples of an array after the low-pass.
+    """Baseband samples of an array, with the validity of each.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class Baseband:
         taps: int | None = None,
         valid: ArrayLike | None = None,
     ) -> "Baseband":
-        """Low-pass the samples of the converter, and keep every `factor`-th one.
+        """Low-pass filter and decimate samples of a converter.
 
         Parameters
         ----------
@@ -138,7 +138,7 @@ class Baseband:
     def from_recording(
         cls, recording: Recording, array: RadarArray, *, factor: int = 1, taps: int | None = None
     ) -> "Baseband":
-        """Low-pass a recording, and keep every `factor`-th sample.
+        """Low-pass filter and decimate a recording.
 
         Parameters
         ----------
@@ -184,7 +184,7 @@ class Baseband:
         )
 
     def samples(self) -> tuple[ComplexArray, BoolArray]:
-        """Return the samples, with zeros where there is no measurement, and which are one.
+        """Return the samples, with zeros in place of invalid ones, and the mask.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""From IQ samples to tracks: shifts, hypotheses about the start, and a filter from each of them."""
+"""From IQ samples to tracks: Doppler shifts, initial hypotheses, one filter for each."""
 
 import warnings
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from .baseband import Baseband
 
 @record
 class IqTrack:
-    """Tracks from IQ samples, one for each hypothesis about the start.
+    """Tracks from IQ samples, one for each hypothesis about the initial state.
 
     Leading axes are those of the samples.
 
@@ -116,7 +116,7 @@ class IqTrack:
     @property
     @_checks.quiet
     def plausible(self) -> BoolArray:
-        """Whether the chi-square of the start is at most a hundred times its degrees of freedom.
+        """Whether chi-square of the initial estimate is at most 100 times its degrees of freedom.
 
         Shape (...). If not, no straight flight in the box explains the shifts, or there was no
         start; for the usual reasons see `InitialEstimate.plausible`.
@@ -125,14 +125,14 @@ class IqTrack:
 
     @property
     def final_nis(self) -> FloatArray:
-        """NIS of the hypothesis that is the likeliest in the end, shape (..., K - used).
+        """NIS of the hypothesis with the highest final likelihood, shape (..., K - used).
 
         NaN if there is none.
         """
         return _of_each(self.nis, np.argmin(self.score[..., -1], axis=-1))
 
     def samples_at(self, time: float) -> int:
-        """Return how many samples of the filter are known at a time.
+        """Return the number of filtered samples that are available at a time.
 
         Parameters
         ----------
@@ -158,7 +158,7 @@ class IqTrack:
 
     @_checks.quiet
     def at(self, time: float, carry: bool = True) -> tuple[FloatArray, FloatArray, IntArray]:
-        """Return what is known at a time about the state at that time.
+        """Return state and covariance at a time, from the samples available by then.
 
         Parameters
         ----------
@@ -210,7 +210,7 @@ def track_iq(
     least_snr: float = 20.0,
     search: Literal["parts", "whole"] = "parts",
 ) -> IqTrack:
-    """Find and track a target from the IQ samples of an array.
+    """Detect and track a target in the IQ samples of an array.
 
     Parameters
     ----------

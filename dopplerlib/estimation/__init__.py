@@ -1,4 +1,4 @@
-"""From measurements to a state."""
+"""Initialization, Kalman filters and smoothing."""
 
 from .._lazy import attach
 

@@ -1,4 +1,4 @@
-"""Functions that a caller hands in: one for all samples or one for each, with checked values."""
+"""Functions of the caller, one for all samples or one for each, with checked values."""
 
 from .. import _checks
 

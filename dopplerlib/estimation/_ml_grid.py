@@ -133,7 +133,7 @@ def scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
 
 @compiled
 def lowest_minima(score, shape, low, spare, chosen):
-    """Write the lowest points that no neighbor is below to `chosen`; return how many."""
+    """Write the lowest local minima to `chosen`; return their number."""
     copy(score, low)
     inner = score.size
     # `low` becomes the minimum over a point and its 26 neighbors: that of three points along one

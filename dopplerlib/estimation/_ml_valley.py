@@ -1,4 +1,4 @@
-"""Where the likelihood is nearly flat, compiled: follow its valley, settle on one of its states.
+"""Nearly flat likelihoods, compiled: follow the valley, choose one of its states.
 
 A line of sight says little about range, so along one direction the cost may have several minima
 close together, or none at all.

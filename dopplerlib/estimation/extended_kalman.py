@@ -33,7 +33,7 @@ def ekf(
     keep: Iterable[str] = _OPTIONAL,
     workers: int | None = None,
 ) -> Track:
-    """Track a target from its Doppler shifts, over a whole record and for many runs at once.
+    """Filter whole records of Doppler shifts with an extended Kalman filter, many runs at once.
 
     Every cycle predicts, then updates. The Jacobian is that of the predicted state.
 

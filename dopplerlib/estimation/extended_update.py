@@ -1,4 +1,4 @@
-"""One update of an extended Kalman filter with any measurement function."""
+"""Measurement update of the extended Kalman filter, for any measurement function."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -20,7 +20,7 @@ def ekf_innovation(
     R: ArrayLike,
     wrap: Iterable[int] = (),
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the innovation and its covariance: what a gate looks at before the update.
+    """Return the innovation of a nonlinear measurement and its covariance, for a gate.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def ekf_update(
     wrap: Iterable[int] = (),
     accept: ArrayLike | None = None,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the state and covariance after a measurement of a nonlinear function of the state.
+    """Measurement update of the extended Kalman filter (Joseph form).
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def linearized(
     H: Callable[..., Any],
     wrap: Iterable[int] = (),
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the innovation of a nonlinear measurement, and the Jacobian: all that an EKF adds.
+    """Return the innovation of a nonlinear measurement, and the Jacobian.
 
     What comes from the caller is unchecked, what the functions return is not.
 
@@ -173,7 +173,7 @@ def linearized(
 
 
 def wrapped(difference: FloatArray, wrap: Iterable[int]) -> FloatArray:
-    """Return unchecked differences with those of angles, at places `wrap`, in [-pi, pi)."""
+    """Return differences with the angles among them wrapped to [-pi, pi); unchecked."""
     difference = difference.copy()
     for i in wrap:
         difference[..., i] = (difference[..., i] + np.pi) % (2 * np.pi) - np.pi

@@ -19,7 +19,7 @@ from .._typing import BoolArray, FloatArray
 
 @_checks.quiet
 def square_root(P: FloatArray) -> FloatArray:
-    """Return square roots L of covariances: L L' is P to rounding.
+    """Return square roots of covariances: L with L L' = P to rounding.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def square_root(P: FloatArray) -> FloatArray:
 
 @_checks.quiet
 def squared(A: FloatArray, noise: FloatArray | float = 0.0) -> FloatArray:
-    """Return A A' and noise, symmetric.
+    """Return A A' + noise, symmetric.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def squared(A: FloatArray, noise: FloatArray | float = 0.0) -> FloatArray:
 def predict(
     x: FloatArray, P: FloatArray, F: FloatArray, Q: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return state and covariance after a linear step: F x and F P F' + Q.
+    """Predict state and covariance by a linear motion: F x and F P F' + Q.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def predict(
 
 @_checks.quiet
 def innovation(x: FloatArray, z: FloatArray, H: FloatArray) -> FloatArray:
-    """Return measured minus predicted measurement, z - H x.
+    """Return the innovation z - H x of a linear measurement.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def innovation(x: FloatArray, z: FloatArray, H: FloatArray) -> FloatArray:
 def gain(
     P: FloatArray, H: FloatArray, R: FloatArray, there: BoolArray | bool = True
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the gain of an update, the covariance after it, and that of the innovation.
+    """Return the Kalman gain, the updated covariance, and that of the innovation.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def gain(
 def gain_of_root(
     P: FloatArray, L: FloatArray, HL: FloatArray, R: FloatArray, there: BoolArray | bool = True
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return what `gain` does, from H L in place of H: all that sigma points tell about H.
+    """Return the same as `gain` from H L in place of H, as sigma points give it.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def gain_of_root(
 
 @_checks.quiet
 def moved(x: FloatArray, K: FloatArray, innovation: FloatArray) -> FloatArray:
-    """Return states after a measurement: x + K innovation, without what is missing.
+    """Return updated states x + K innovation; missing components add nothing.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def moved(x: FloatArray, K: FloatArray, innovation: FloatArray) -> FloatArray:
 def update(
     x: FloatArray, P: FloatArray, innovation: FloatArray, H: FloatArray, R: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return state and covariance after a measurement, and the covariance of the innovation.
+    """Update state and covariance by a measurement; return the innovation covariance as well.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def quadratic_form(v: FloatArray, S: FloatArray) -> FloatArray:
 
 @_checks.quiet
 def log_density(v: FloatArray, S: FloatArray) -> FloatArray:
-    """Return the logarithm of the density of zero-mean Gaussians at vectors.
+    """Return the log density of zero-mean Gaussians.
 
     Parameters
     ----------
@@ -335,7 +335,7 @@ def smooth(
     x_next: FloatArray,
     P_next: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return a filtered estimate after what a later one, smoothed, teaches about it.
+    """Return a smoothed estimate from the filtered one and the smoothed one after it.
 
     Parameters
     ----------
@@ -368,7 +368,7 @@ def smooth(
 
 @_checks.quiet
 def solve(P: FloatArray, B: FloatArray) -> FloatArray:
-    """Return P^-1 B, in which directions without any spread but rounding take no part.
+    """Return P^-1 B by the pseudo-inverse: directions of no variance contribute nothing.
 
     Parameters
     ----------
@@ -414,7 +414,7 @@ def _form(v, S):
 
 
 def _weighed(L, HL, R, there):
-    """Return gain, S, and R in which the noise of what is missing has variance 1.
+    """Return gain, S, and R in which the noise of missing components has variance 1.
 
     What is missing measures nothing: its rows of H L are zero, and so are its columns of the gain.
     """

@@ -1,4 +1,4 @@
-"""The interacting multiple model estimator: several filters that share one target."""
+"""The interacting multiple model (IMM) estimator."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -21,7 +21,7 @@ def imm(
     P0: Any,
     mode0: ArrayLike | None = None,
 ) -> ImmTrack:
-    """Filter whole records with several models between which the target may switch.
+    """Filter whole records with an interacting multiple model estimator, many runs at once.
 
     Every cycle mixes, predicts, then updates.
 
@@ -99,7 +99,7 @@ def imm(
 def imm_start(
     models: Iterable[ImmModel], x0: Any, P0: Any, mode0: ArrayLike | None = None
 ) -> ImmState:
-    """Return the state of an IMM before the first measurement, for `imm_step`.
+    """Return the initial state of an IMM estimator, for `imm_step`.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def imm_start(
 def imm_step(
     z: ArrayLike, state: ImmState, models: Iterable[ImmModel], transition: ArrayLike
 ) -> ImmState:
-    """Return the state of an IMM after one more measurement.
+    """Return the state of an IMM estimator after one more measurement.
 
     Parameters
     ----------
@@ -259,7 +259,7 @@ def _start(models, x0, P0, mode0, batch):
 
 
 def _each_model(name, values, models):
-    """Return what is given for each model, or raise."""
+    """Return the values given for each model, or raise."""
     values = tuple(_checks.iterable(name, values, "a sequence with one entry for each model"))
     if len(values) != len(models):
         raise ValueError(f"{name} must have one entry for each model, got {len(values)}")

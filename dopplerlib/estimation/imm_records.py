@@ -16,7 +16,7 @@ Function = Callable[..., Any] | Sequence[Callable[..., Any]]  # for all samples,
 
 @record
 class ImmModel:
-    """A motion, a measurement, and the meaning of the state that they are about.
+    """One model of an IMM estimator: motion, measurement, and the meaning of its state.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class ImmModel:
 
 @record
 class ImmState:
-    """Estimates of all models at one sample, and the estimate that they amount to.
+    """Estimates of all models of an IMM at one sample, and their mixture.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class ImmState:
 
 @record
 class ImmTrack:
-    """Estimates of a record by several models, after the updates.
+    """Estimates of an IMM over a record, after the updates.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The linear Kalman filter: for linear models, and as a yardstick for the others."""
+"""The linear Kalman filter."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from .track import Track
 def kf_predict(
     x: ArrayLike, P: ArrayLike, F: ArrayLike, Q: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the predicted state and covariance: F x and F P F' + Q.
+    """Time update of the linear Kalman filter: F x and F P F' + Q.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def kf_predict(
 def kf_update(
     x: ArrayLike, P: ArrayLike, z: ArrayLike, H: ArrayLike, R: ArrayLike
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the state and covariance after a measurement, in Joseph form.
+    """Measurement update of the linear Kalman filter (Joseph form).
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def kf(
     x0: ArrayLike,
     P0: ArrayLike,
 ) -> Track:
-    """Filter whole records with a linear Kalman filter, many runs at once.
+    """Linear Kalman filter over whole records, many runs at once.
 
     Every cycle predicts, then updates, like `ekf`.
 

@@ -1,4 +1,4 @@
-"""Where to start: the state that makes the first measurements most likely."""
+"""Maximum-likelihood initialization from the first measurements."""
 
 import os
 from concurrent.futures import ThreadPoolExecutor
@@ -30,12 +30,12 @@ _WINDOW = 0.25
 
 
 class ImplausibleStart(UserWarning):
-    """An initial estimate does not explain its measurements, see `InitialEstimate.plausible`."""
+    """Warning of an initial estimate that does not explain its measurements."""
 
 
 @record
 class InitialEstimate:
-    """Maximum-likelihood estimates; leading axes are those of the measurements.
+    """Maximum-likelihood initial estimates; leading axes are those of the measurements.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ def ml_initialize(
     at: Literal["first", "last"] = "first",
     workers: int | None = None,
 ) -> InitialEstimate:
-    """ConfidenceInterval states from scratch: the global maximum of the likelihood in a box.
+    """Return initial estimates: the global maximum of the likelihood in a box.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Kalman filters for any motion and any measurement: extended, unscented and cubature."""
+"""Nonlinear Kalman filters: extended, unscented and cubature."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal
@@ -29,7 +29,7 @@ def ekf_records(
     gate: Literal["upper", "two-sided"] | None = None,
     gate_probability: float = 0.95,
 ) -> Track:
-    """Filter whole records with an extended Kalman filter, for any motion and any measurement.
+    """Filter whole records with an extended Kalman filter, for any motion and measurement.
 
     Every cycle predicts, then updates, like `kf`. `ekf` is the same for Doppler shifts, compiled.
 
@@ -121,7 +121,7 @@ def ukf(
     gate: Literal["upper", "two-sided"] | None = None,
     gate_probability: float = 0.95,
 ) -> Track:
-    """Filter whole records with an unscented or cubature Kalman filter, which needs no Jacobian.
+    """Filter whole records with an unscented or cubature Kalman filter, without Jacobians.
 
     Every cycle predicts, then updates, each with sigma points drawn anew.
 

@@ -1,4 +1,4 @@
-"""A radial velocity as a sequential update of a position filter, as a pseudo-measurement."""
+"""Sequential update of a position filter by a radial velocity (pseudo-measurement)."""
 
 from typing import Literal
 
@@ -12,7 +12,7 @@ from . import gaussian
 
 @record
 class RadialVelocity:
-    """The terms of a radial-velocity update.
+    """Terms of a radial-velocity update.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ def radial_velocity_terms(
     sigma: ArrayLike,
     variance: Literal["corrected", "printed"] = "corrected",
 ) -> RadialVelocity:
-    """Return matrix, bias and variance with which a radial velocity updates a state.
+    """Return matrix, bias and variance of the pseudo-measurement of a radial velocity.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def radial_velocity_update(
     sigma: ArrayLike,
     variance: Literal["corrected", "printed"] = "corrected",
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return state and covariance after a measured radial velocity.
+    """Measurement update by a radial velocity.
 
     Parameters
     ----------

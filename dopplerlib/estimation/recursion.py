@@ -1,4 +1,4 @@
-"""The recursion of every filter: one cycle, and the loop over the samples of a record; unchecked.
+"""The recursion of all filters: one cycle, and the loop over a record; unchecked.
 
 A filter is a motion model, a measurement model and a rule that linearizes them. It hands two
 functions to `cycle`: one that predicts and one that returns innovation and gain. A cycle takes a
@@ -28,7 +28,7 @@ def scan(
     axis: int = 0,
     first: tuple[Any, ...] | None = None,
 ) -> tuple[FloatArray, ...]:
-    """Return what a step returns along a record: the loop over the samples.
+    """Apply a step to all samples of a record; return its outputs, stacked.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def cycle(
     correct: Correct,
     bounds: Bounds | None = None,
 ) -> tuple[tuple[FloatArray, FloatArray], tuple[Any, ...]]:
-    """Return state and outputs after one cycle: predict, look at the gate, update.
+    """One cycle of a filter: predict, gate, update.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def filter_records(
     axis: int,
     bounds: Bounds | None = None,
 ) -> Track:
-    """Filter whole records, many runs at once.
+    """Apply `cycle` to whole records, many runs at once.
 
     Parameters
     ----------

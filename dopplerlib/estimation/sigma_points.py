@@ -1,4 +1,4 @@
-"""Sigma points: a nonlinear function as a linear one and an error, without derivatives; unchecked.
+"""Sigma points: linear regression of a nonlinear function, without derivatives; unchecked.
 
 The points are x and x +- s L e_i with a square root L of P. Half the difference of a pair is s
 times a column of H L, where H is the slope of the regression line; the mean of a pair, less the
@@ -24,7 +24,7 @@ from .extended_update import wrapped
 def scaling(
     n: int, alpha: float = 1.0, beta: float = 0.0, kappa: float = 0.0
 ) -> tuple[float, float]:
-    """Return s and t of the scaled unscented points; by default those of cubature.
+    """Return the scaling of unscented sigma points; by default that of cubature.
 
     Raises ValueError unless the settings are numbers which give no negative variance.
     """
@@ -52,7 +52,7 @@ def regression(
     scale: tuple[float, float],
     wrap: Iterable[int] = (),
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the mean of a function of Gaussians, its slope times L, and a root of the rest.
+    """Return the linear regression of a function of Gaussians: mean, slope, residual.
 
     Parameters
     ----------

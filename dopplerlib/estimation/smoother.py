@@ -1,4 +1,4 @@
-"""The Rauch-Tung-Striebel smoother: what the later measurements add to the earlier states."""
+"""The Rauch-Tung-Striebel smoother."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from . import gaussian, recursion
 def rts_smooth(
     x: ArrayLike, P: ArrayLike, F: ArrayLike, Q: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the states given the whole record, from those that a Kalman filter returned.
+    """Smooth the estimates of a Kalman filter over the whole record.
 
     Parameters
     ----------

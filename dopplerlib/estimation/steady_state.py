@@ -1,4 +1,4 @@
-"""The Kalman filter after a long time: its constant gain, and how far it lags behind."""
+"""The Kalman filter in steady state: gain, covariance and lag."""
 
 import warnings
 
@@ -13,7 +13,7 @@ from . import gaussian
 def steady_state_gain(
     F: ArrayLike, Q: ArrayLike, H: ArrayLike, R: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the gain and the covariance to which a Kalman filter settles.
+    """Return the steady-state gain and covariance of a Kalman filter.
 
     Parameters
     ----------
@@ -65,19 +65,23 @@ def steady_state_gain(
             # SciPy takes no rounding across the diagonal.
             predicted = solve_discrete_are(F.T, H.T, (Q + Q.T) / 2, (R + R.T) / 2)
     except (np.linalg.LinAlgError, LinAlgWarning, ValueError):
-        raise ValueError("F, H, Q must let the filter settle, got no stable solution") from None
+        raise ValueError(
+            "F, H, Q must be detectable and stabilizable, got no solution of the Riccati equation"
+        ) from None
     K, P, _ = gaussian.gain(predicted, H, R)
     A = np.eye(n) - K @ H
     _checks.estimates("F, Q, H, R", K, P, A @ F)
     # A double eigenvalue of 1 comes out with an error of half the digits.
     if np.abs(np.linalg.eigvals(A @ F)).max() > 1 - 1e-7:
-        raise ValueError("F, H, Q must let the filter settle, got errors that never die out")
+        raise ValueError(
+            "F, H, Q must be detectable and stabilizable, got a filter that is not stable"
+        )
     return K, P
 
 
 @_checks.quiet
 def steady_state_lag(F: ArrayLike, H: ArrayLike, K: ArrayLike, push: ArrayLike) -> FloatArray:
-    """Return how far behind a filter of constant gain stays when the truth departs from its model.
+    """Return the steady-state lag of a filter whose model lacks a constant push.
 
     Parameters
     ----------
@@ -121,7 +125,9 @@ def steady_state_lag(F: ArrayLike, H: ArrayLike, K: ArrayLike, push: ArrayLike) 
     A = np.eye(n) - K @ H
     _checks.estimates("F, H, K", A @ F)
     if np.abs(np.linalg.eigvals(A @ F)).max() >= 1:
-        raise ValueError("K must let errors die out, got a filter that is not stable")
+        raise ValueError(
+            "K must give a stable filter, got (I - K H) F with eigenvalues outside the unit circle"
+        )
     lag = np.linalg.solve(np.eye(n) - A @ F, A @ push[..., None])[..., 0]
     _checks.estimates("F, H, K, push", lag)
     return lag

@@ -1,4 +1,4 @@
-"""What a filter returns."""
+"""The record that filters return."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from .._records import record
 
 @record
 class Track:
-    """Estimates of a record, all at the times of the measurements and after their update.
+    """Estimates of a filter over a record, after the updates.
 
     Leading axes are those of the measurements (runs first), then K times.
 

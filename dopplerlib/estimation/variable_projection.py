@@ -1,4 +1,4 @@
-"""The best velocity at a given position: a linear problem inside a nonlinear one."""
+"""Variable projection: the velocity given the position is a linear least-squares problem."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..model.radar_array import RadarArray
 def velocity_given_position(
     z: ArrayLike, array: RadarArray, sigma_f: ArrayLike, p: ArrayLike, in_plane: bool = False
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the velocity that explains Doppler shifts best if the position is known.
+    """Return the weighted least-squares velocity from Doppler shifts at a known position.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Is a filter right: statistics of its errors and innovations, intervals and bounds."""
+"""Filter consistency, observability, bounds and confidence intervals."""
 
 from .._lazy import attach
 

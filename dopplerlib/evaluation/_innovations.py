@@ -1,4 +1,4 @@
-"""What tests of consistency share: a track's innovations, of which some are missing, and states."""
+"""Common parts of consistency tests: innovations, of which some are missing, and states."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ..estimation.track import Track
 
 
 def measured(innovation, S, record=False, of=""):
-    """Check innovations and their covariances, and set apart what is missing.
+    """Check innovations and their covariances, and set missing ones apart.
 
     Where a component of an innovation is NaN it was not measured, as a `Track` has it: there the
     innovation becomes 0, and the row and column of S those of a unit matrix. Then the quadratic
@@ -99,7 +99,9 @@ def whiten(vector, S, names="innovation, S"):
         else:
             white = np.linalg.solve(L, vector[..., None])[..., 0]
     if not (np.abs(white) <= 1e60).all():
-        raise ValueError(f"{names} must belong together, got a value of over 1e60 deviations")
+        raise ValueError(
+            f"{names} must belong together, got an error of over 1e60 standard deviations"
+        )
     return white
 
 
@@ -153,6 +155,6 @@ def ljung_box(white, there, lags, least=None):
 
 
 def _lag(white, there, lag):
-    """Return the sums of the products of values `lag` apart, and how many there are."""
+    """Return the sums of the products of values `lag` apart, and their number."""
     products = np.sum(white[..., lag:, :] * white[..., :-lag, :], axis=-2)
     return products, np.sum(there[..., lag:, :] & there[..., :-lag, :], axis=-2)

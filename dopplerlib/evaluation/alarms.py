@@ -1,4 +1,4 @@
-"""When the innovations alone raise an alarm: three tests, taken again and again as data come in."""
+"""Alarms: sequential tests of the innovations of a running filter."""
 
 from collections.abc import Iterable
 
@@ -13,7 +13,7 @@ from ._innovations import chi2_tail, ljung_box, of_track, whiten
 def innovation_alarms(
     track: Track, looks: Iterable[int], probability: float = 0.001, lags: int = 5
 ) -> dict[str, BoolArray]:
-    """Test after some numbers of samples whether the innovations are those of a right filter.
+    """Test the innovations of a running filter for consistency, at given sample numbers.
 
     None of the tests needs the truth.
 
@@ -82,7 +82,7 @@ def innovation_alarms(
 
 
 def first_alarm(alarms: ArrayLike, looks: Iterable[int]) -> FloatArray:
-    """Return after how many samples each run raises its first alarm.
+    """Return the number of samples until the first alarm of each run.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Averages of NIS and NEES: how many independent values they are worth."""
+"""Averages of NIS and NEES: intervals and effective sample sizes."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from .._typing import ArrayLike, FloatArray
 
 
 def average_interval(dof: int, samples: float, confidence: float = 0.95) -> tuple[float, float]:
-    """Return where the average of chi-square values lies that are worth `samples` independent ones.
+    """Interval for the mean of chi-square values with a given effective sample size.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def average_interval(dof: int, samples: float, confidence: float = 0.95) -> tupl
 
 
 def effective_samples(autocorrelation: ArrayLike, samples: int) -> FloatArray:
-    """Return how many independent values an average of correlated ones is worth.
+    """Return the effective sample size of correlated values.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def effective_samples(autocorrelation: ArrayLike, samples: int) -> FloatArray:
 
 
 def nees_samples(P: ArrayLike, F: ArrayLike, Q: ArrayLike) -> float:
-    """Return how many independent values the time average of NEES of one right filter is worth.
+    """Return the effective sample size of the time-averaged NEES of a consistent filter.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def nees_samples(P: ArrayLike, F: ArrayLike, Q: ArrayLike) -> float:
     if not unknown.all():
         _checks.covariance("P", P, n, definite=False)
         if not unknown.any():
-            raise ValueError("P must have a variance above zero, got a state that is known")
+            raise ValueError("P must have a positive variance, got a state that is known exactly")
         block = np.ix_(range(samples), unknown, unknown)
         P, F, Q, n = P[block], F[block], Q[block], int(unknown.sum())
     P = _checks.covariance("P", P, n)
@@ -168,7 +168,7 @@ def nees_samples(P: ArrayLike, F: ArrayLike, Q: ArrayLike) -> float:
             step = L[1:].mT @ np.linalg.solve(predicted, F[1:] @ L[:-1])
         except np.linalg.LinAlgError:
             raise ValueError(
-                "F and Q must give F P F' + Q an inverse, got a matrix that is singular to rounding"
+                "F and Q must make F P F' + Q nonsingular, got one that is singular to rounding"
             ) from None
         C, total = step, 0.0
         for lag in range(1, len(P)):

@@ -1,4 +1,4 @@
-"""Intervals of what has no formula: runs are drawn with replacement."""
+"""Bootstrap confidence intervals."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -21,7 +21,7 @@ def bootstrap_interval(
     resamples: int = 400,
     confidence: float = 0.95,
 ) -> ConfidenceInterval:
-    """ConfidenceInterval a function of means over independent runs.
+    """Return a bootstrap interval for a function of means over independent runs.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How good an estimate can be at best: the Cramér-Rao lower bound."""
+"""The Cramér-Rao lower bound."""
 
 from typing import Literal
 
@@ -17,7 +17,7 @@ def crlb(
     *,
     free: ArrayLike | None = None,
 ) -> FloatArray:
-    """Return the least covariance of an unbiased estimate of the state from K Doppler samples.
+    """Return the Cramér-Rao lower bound of the state from K Doppler samples.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What to test before believing a Doppler filter: eight checks that need nobody's word."""
+"""Acceptance tests of a Doppler filter: eight checks against known answers."""
 
 from collections.abc import Callable
 from typing import Any
@@ -63,13 +63,13 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """Whether the filter passes; never if `value` is NaN."""
+        """Whether the filter passes the check; never if `value` is NaN."""
         good = self.value <= self.limit if self.kind == "exact" else self.value >= self.limit
         return bool(good)
 
 
 def complex_step_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
-    """Return the derivative of the Doppler shifts by a complex step, without a formula for it.
+    """Return the Jacobian of the Doppler shifts by the complex-step method.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def filter_checklist(
     samples: int = 100,
     deviation: float = 0.01,
 ) -> tuple[Check, ...]:
-    """Put a filter through eight checks, in a world that is as the filter believes it to be.
+    """Run eight acceptance tests of a filter on simulations that match its model.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def filter_checklist(
     before = s.x0 - s.T * np.r_[s.x0[3:], 0, 0, 0]
 
     true_H = complex_step_jacobian(calm, s.array)
-    H = np.stack([_checks.real("what jacobian returns", jacobian(x, s.array)) for x in calm])
+    H = np.stack([_checks.real("jacobian(x, array)", jacobian(x, s.array)) for x in calm])
     if H.shape != true_H.shape:
         raise ValueError(
             f"jacobian must return an array of shape {true_H.shape[1:]}, got {H.shape[1:]}"
@@ -214,7 +214,7 @@ def _world(s, F, P0, runs, samples, rng):
 
 
 def _linear_limit(tracker, s, path, before, P0, F, Q, rng):
-    """Return how far the filter is from a Kalman filter when all errors are tiny."""
+    """Return the distance of the filter from a Kalman filter when all errors are tiny."""
     e = _SMALL
     offset = rng.multivariate_normal(np.zeros(6), P0)
     noise = s.sigma_f * rng.standard_normal((len(path), len(s.array)))
@@ -228,7 +228,7 @@ def _linear_limit(tracker, s, path, before, P0, F, Q, rng):
 
 
 def _renamed(tracker, s, z, start, track, settings):
-    """Return how far the track moves if x, y, z are called y, z, x."""
+    """Return the change of the track if x, y, z are called y, z, x."""
     array = RadarArray(np.roll(s.array.positions, 1, axis=-1), s.array.wavelength)
 
     def renamed(x):
@@ -242,21 +242,19 @@ def _checked(tracker):
     """Return the filter as one that raises if it returns no track, or one of wrong shapes."""
 
     def checked(z, array, x0, *settings):
-        track = _checks.instance("what tracker returns", tracker(z, array, x0, *settings), Track)
+        track = _checks.instance("tracker(...)", tracker(z, array, x0, *settings), Track)
         for name, own in {"x": (6,), "P": (6, 6), "innovation": z.shape[2:], "S": z.shape[2:] * 2,
                           "nis": ()}.items():  # fmt: skip
             got, wanted = np.shape(getattr(track, name)), (*z.shape[:2], *own)
             if got != wanted:
-                raise ValueError(
-                    f"{name} of what tracker returns must have shape {wanted}, got {got}"
-                )
+                raise ValueError(f"{name} of tracker(...) must have shape {wanted}, got {got}")
         return track
 
     return checked
 
 
 def _of(function, *arguments):
-    """Return a number, or NaN if there is none for what a broken filter returned."""
+    """Return a number, or NaN if a broken filter returned none."""
     try:
         return function(*arguments)
     except (ValueError, np.linalg.LinAlgError):
@@ -264,7 +262,7 @@ def _of(function, *arguments):
 
 
 def _asymmetry(P):
-    """Return the largest asymmetry, in shares of the largest entry; infinite if not definite."""
+    """Return the largest asymmetry relative to the largest entry; infinite if not definite."""
     spread = np.linalg.eigvalsh((P + P.mT) / 2)[..., 0].min()
     return np.abs(P - P.mT).max() / np.abs(P).max() if spread > 0 else np.inf
 

@@ -1,4 +1,4 @@
-"""Consistency of a filter: its errors should have the size that it claims."""
+"""Filter consistency: NEES and NIS."""
 
 import numpy as np
 
@@ -100,7 +100,7 @@ def nis(innovation: ArrayLike, S: ArrayLike) -> FloatArray:
 
 
 def chi2_interval(dof: int, runs: int = 1, confidence: float = 0.95) -> tuple[float, float]:
-    """Return the interval in which a consistent filter's average NEES or NIS lies.
+    """Return the interval for the average NEES or NIS of a consistent filter.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Consistency along single directions: an average can hide what one of them does."""
+"""Consistency along the principal axes of the covariance."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from .._typing import ArrayLike, FloatArray
 
 
 def principal_axis_errors(error: ArrayLike, P: ArrayLike) -> FloatArray:
-    """Return the errors along the principal axes of their covariance, each in its deviations.
+    """Return the normalized errors along the principal axes of their covariance.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Numbers with their Monte Carlo interval: means, shares, quantiles of independent runs."""
+"""Confidence intervals of Monte Carlo results: means, RMS, proportions, quantiles."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .._typing import ArrayLike
 
 @record
 class ConfidenceInterval:
-    """A number that was estimated from runs, and the interval that its uncertainty leaves.
+    """A number estimated from independent runs, with its confidence interval.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class ConfidenceInterval:
 
 
 def mean_interval(values: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
-    """Estimate the mean of what independent runs are drawn from.
+    """Estimate a mean from independent runs, with its confidence interval.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> ConfidenceInte
 
 
 def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
-    """Estimate the root-mean-square error of what independent runs are drawn from.
+    """Estimate an RMS error from independent runs, with its confidence interval.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> ConfidenceInter
 
 
 def proportion_interval(hits: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
-    """Estimate the probability of an event from the runs in which it happened.
+    """Estimate a probability from the proportion of runs, with its confidence interval.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def proportion_interval(hits: ArrayLike, confidence: float = 0.95) -> Confidence
 def quantile_interval(
     values: ArrayLike, q: float = 0.5, confidence: float = 0.95
 ) -> ConfidenceInterval:
-    """Estimate a quantile of what independent runs are drawn from: the median by default.
+    """Estimate a quantile (the median by default) from independent runs, with its interval.
 
     Parameters
     ----------

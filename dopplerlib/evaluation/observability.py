@@ -1,4 +1,4 @@
-"""What an array can see of a state: how many directions, how well, and what it mistakes it for."""
+"""Observability of a state by an array: rank, bounds, ambiguities."""
 
 from typing import Literal
 
@@ -22,7 +22,7 @@ def observable_rank(
     *,
     free: ArrayLike | None = None,
 ) -> IntArray:
-    """Return the rank of the Fisher information: how many components are seen to first order.
+    """Return the rank of the Fisher information, the number of observable components.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def observable_rank(
 def rms_bounds(
     P: ArrayLike, x: ArrayLike | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the root mean square errors of position, velocity and range that `P` stands for.
+    """Return the RMS errors of position, velocity and range of a covariance.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def rms_bounds(
     p = x[..., :3]
     distance = np.hypot(np.hypot(p[..., 0], p[..., 1]), p[..., 2])[..., None]
     if not distance.all():
-        raise ValueError("x must lie off the origin, got a range of 0")
+        raise ValueError("x must not lie at the origin, got a range of 0")
     along = p / distance
     # An infinite variance reaches every range that is not across it.
     reached = (lost[..., :3] & (along != 0)).any(axis=-1)
@@ -131,7 +131,7 @@ def nearest_ambiguity(
     box: tuple[ArrayLike, ArrayLike],
     likelihood: Literal["stationary", "constant_velocity"] = "constant_velocity",
 ) -> tuple[FloatArray, float]:
-    """Return the second-best explanation of noise-free measurements, and how often it wins.
+    """Return the second-best fit to noise-free measurements, and its probability of winning.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Which records a test of consistency refuses: its false alarms, and its power against faults."""
+"""Power of consistency tests: false alarms, and rejections of faulty filters."""
 
 import numpy as np
 from scipy.special import chdtri, gammaincinv, ndtri
@@ -31,7 +31,7 @@ def rejections(
     lags: int = 20,
     group: int = 20,
 ) -> dict[str, BoolArray]:
-    """Return which records of a linear filter fail each test of consistency.
+    """Return the records of a linear filter that each consistency test rejects.
 
     Parameters
     ----------

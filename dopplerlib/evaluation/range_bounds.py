@@ -1,4 +1,4 @@
-"""How well ranges can tell a position at best."""
+"""The Cramér-Rao lower bound of a position from ranges."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ..model.range_rate import range_rate_jacobian
 
 
 def range_crlb(p: ArrayLike, sensors: ArrayLike, sigma: ArrayLike) -> FloatArray:
-    """Return the least covariance of an unbiased position estimate from one range per radar.
+    """Return the Cramér-Rao lower bound of a position from one range per radar.
 
     Parameters
     ----------

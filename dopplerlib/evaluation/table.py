@@ -1,4 +1,4 @@
-"""A table of results that a notebook shows: as HTML on a page, as aligned text elsewhere."""
+"""Tables of results, as HTML on a page and as aligned text elsewhere."""
 
 from collections.abc import Mapping
 from html import escape
@@ -12,7 +12,7 @@ from .intervals import ConfidenceInterval
 
 @record
 class Table:
-    """Rows of values under named columns, with the decimals of each column or of each row.
+    """A table of values, with the format of each column or row.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Innovations of an optimal filter have mean zero and no memory: the tests of both."""
+"""Tests of innovations: zero mean and whiteness."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ._innovations import ljung_box, measured, whiten
 
 @record
 class Whiteness:
-    """Autocorrelation of innovations and the test that it is zero.
+    """Autocorrelation of innovations, and the test that it is zero.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Whiteness:
 
 
 def innovation_mean(innovation: ArrayLike, S: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return the time average of each innovation and its standard error if the filter is right.
+    """Return the time average of each innovation, and its standard error for a consistent filter.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def innovation_mean(innovation: ArrayLike, S: ArrayLike) -> tuple[FloatArray, Fl
 
 
 def innovation_whiteness(innovation: ArrayLike, S: ArrayLike, lags: int = 20) -> Whiteness:
-    """Test whether innovations are uncorrelated in time.
+    """Test innovations for whiteness (Ljung-Box).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The world as numbers: sensors, Doppler shift, motion, scenarios, simulation."""
+"""Sensors, Doppler shift, motion, scenarios and simulation."""
 
 from .._lazy import attach
 

@@ -1,4 +1,4 @@
-"""States that a ring of sensors cannot tell apart, as numbers."""
+"""The family of states that a ring of sensors cannot distinguish."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from .._typing import ArrayLike, FloatArray
 
 
 def ring_family(x: ArrayLike, radius: float, t: ArrayLike) -> FloatArray:
-    """Return states with the same Doppler shifts at every sensor of a ring.
+    """Return states with equal Doppler shifts at every sensor of a ring.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def ring_family(x: ArrayLike, radius: float, t: ArrayLike) -> FloatArray:
 
 
 def ring_family_limits(x: ArrayLike, radius: float) -> tuple[FloatArray, FloatArray]:
-    """Return the ends of the family of `ring_family`, where it meets the plane of the ring.
+    """Return the limits of the parameter of `ring_family`, at which it meets the plane of the ring.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def ring_family_limits(x: ArrayLike, radius: float) -> tuple[FloatArray, FloatAr
 
 
 def ring_family_direction(x: ArrayLike, radius: float) -> FloatArray:
-    """Return the derivative of `ring_family` by t at t = 1: the direction that a ring cannot see.
+    """Return the unobservable direction of a ring: the derivative of `ring_family` at t = 1.
 
     Parameters
     ----------

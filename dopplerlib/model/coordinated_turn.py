@@ -1,4 +1,4 @@
-"""Targets that turn at a nearly constant rate in the plane, and the derivative of that motion."""
+"""Coordinated turn in the plane, at a nearly constant turn rate, and its Jacobian."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from .._typing import ArrayLike, FloatArray
 
 @_checks.quiet
 def coordinated_turn(x: ArrayLike, T: float) -> FloatArray:
-    """Return states after an interval in which speed and turn rate stay the same.
+    """Return states after an interval of constant speed and turn rate.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def coordinated_turn(x: ArrayLike, T: float) -> FloatArray:
 
 @_checks.quiet
 def coordinated_turn_jacobian(x: ArrayLike, T: float) -> FloatArray:
-    """Return the derivative of `coordinated_turn` with respect to the state.
+    """Return the Jacobian of `coordinated_turn` with respect to the state.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Doppler shifts of states, and their derivatives, for all sensors of an array."""
+"""Doppler shifts at all sensors of an array, and their Jacobian."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .radar_array import RadarArray
 
 
 def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
-    """Return the Doppler shift that every sensor sees.
+    """Return the Doppler shift at every sensor of an array.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
 
 
 def doppler_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
-    """Return the derivative of every sensor's Doppler shift with respect to the state.
+    """Return the Jacobian of the Doppler shifts with respect to the state.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the measurements say about a state: Fisher information and its inverse."""
+"""Fisher information of Doppler measurements about a state, and its inverse."""
 
 from typing import Literal
 
@@ -23,7 +23,7 @@ def fisher_information(
     T: float = 0.001,
     likelihood: Literal["stationary", "constant_velocity"] = "stationary",
 ) -> FloatArray:
-    """Return the Fisher information of K Doppler samples about the state at the first of them.
+    """Return the Fisher information of K Doppler samples about the state at the first one.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def free_components(free: ArrayLike | None, n: int) -> BoolArray:
 def inverse_information(
     information: ArrayLike, free: ArrayLike | None = None
 ) -> tuple[FloatArray, BoolArray]:
-    """Return the covariance that an information matrix allows, infinite where it says nothing.
+    """Return the inverse of an information matrix, infinite along unobservable components.
 
     Parameters
     ----------

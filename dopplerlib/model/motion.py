@@ -230,7 +230,7 @@ def cwnj_process_noise(
 def velocity_step_noise(
     w: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
-    """Return a process noise that acts on the velocities alone, once a step.
+    """Return the process noise of velocities that change by a random step in every interval.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a radar in the plane measures of a target: range, azimuth and range rate."""
+"""Measurement function of a radar in the plane: range, azimuth and range rate."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from .._typing import ArrayLike, FloatArray
 
 
 def polar_radar_h(x: ArrayLike) -> FloatArray:
-    """Return range, azimuth and range rate of targets, seen from the origin.
+    """Return range, azimuth and range rate of targets for a radar at the origin.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def polar_radar_jacobian(x: ArrayLike) -> FloatArray:
 
 
 def polar_position(z: ArrayLike) -> FloatArray:
-    """Return the position that a range and an azimuth stand for.
+    """Return the position at a range and an azimuth.
 
     Parameters
     ----------
@@ -121,5 +121,5 @@ def _unpacked(x):
     x = _checks.moderate("x", x, (4,))
     r = np.hypot(x[..., 0], x[..., 2])
     if not (r > 0).all():
-        raise ValueError("x must keep clear of the radar at the origin, got a range of 0")
+        raise ValueError("x must not lie on the radar at the origin, got a range of 0")
     return (*np.moveaxis(x, -1, 0), r)

@@ -1,4 +1,4 @@
-"""Where the sensors are, and the wavelength they use."""
+"""Positions and wavelength of an array of sensors."""
 
 from typing import TYPE_CHECKING, Literal
 

@@ -1,4 +1,4 @@
-"""Range and range rate of a target in a plane, as radars at fixed places measure them."""
+"""Range and range rate of a target in a plane, for radars at fixed positions."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from .._typing import ArrayLike, FloatArray
 
 
 def range_rate(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
-    """Return the range and the range rate that every radar measures.
+    """Return the range and the range rate at every radar.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def range_rate(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
 
 
 def range_rate_jacobian(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
-    """Return the derivative of `range_rate` with respect to the state.
+    """Return the Jacobian of `range_rate` with respect to the state.
 
     Parameters
     ----------

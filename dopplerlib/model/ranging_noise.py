@@ -1,4 +1,4 @@
-"""How well a pulse radar measures: signal-to-noise ratio, resolution, and chance to detect."""
+"""Accuracy of a pulse radar: signal-to-noise ratio, resolution, probability of detection."""
 
 import numpy as np
 
@@ -79,7 +79,7 @@ def fourth_power_snr(d: ArrayLike, at_one: float) -> FloatArray:
 
 
 def range_std(resolution: float, snr_db: ArrayLike) -> FloatArray:
-    """Return the standard deviation of a measurement that resolves `resolution`.
+    """Return the standard deviation of a range or range rate at a given resolution.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def range_std(resolution: float, snr_db: ArrayLike) -> FloatArray:
 
 
 def detection_probability(snr_db: ArrayLike, false_alarm: float) -> FloatArray:
-    """Return the chance that one steady echo passes a threshold.
+    """Return the probability of detection of a steady echo by one pulse.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A scenario: sensors, a target's path, and how it is sampled, as a file describes them."""
+"""Scenarios: sensors, a target's path, sampling and noise, read from a file."""
 
 from inspect import signature
 from typing import TYPE_CHECKING
@@ -21,7 +21,7 @@ _ENTRIES = {
 
 @record
 class Scenario:
-    """One target on a straight path before an array, and the settings of its tracker.
+    """One target on a straight path in front of an array, and the settings of its tracker.
 
     Parameters
     ----------

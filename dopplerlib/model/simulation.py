@@ -1,4 +1,4 @@
-"""Measurements of a scenario, with noise."""
+"""Simulated measurements of a scenario."""
 
 import numpy as np
 

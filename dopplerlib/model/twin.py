@@ -1,4 +1,4 @@
-"""The second state that a plane array can hardly tell from a given one."""
+"""The twin: a second state that a plane array can hardly distinguish from a given one."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from .._typing import ArrayLike, FloatArray
 
 
 def planar_twin(x: ArrayLike) -> FloatArray:
-    """Return the state whose Doppler shifts nearly equal those of `x` at any array in x = 0.
+    """Return the twin of a state: nearly equal Doppler shifts at any array in the plane x = 0.
 
     Parameters
     ----------
@@ -52,7 +52,9 @@ def planar_twin(x: ArrayLike) -> FloatArray:
         left = square - np.sum(across * across, axis=-1)
     _checks.estimates("x", left, across_v, what="twin")
     if not (left > 0).all():
-        raise ValueError("x must have a twin before the array, but its twin is too far aside")
+        raise ValueError(
+            "x must have a twin in front of the array, got a position too far off its axis"
+        )
     ahead = np.copysign(np.sqrt(left), p[..., 0])
     ahead_v = (w - np.sum(across * across_v, axis=-1)) / ahead
     return np.concatenate([ahead[..., None], across, ahead_v[..., None], across_v], axis=-1)

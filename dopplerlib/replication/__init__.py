@@ -1,4 +1,4 @@
-"""Is a document right: its claims, our evidence, and the verdicts."""
+"""Claims of documents, our evidence, and the verdicts."""
 
 from .._lazy import attach
 

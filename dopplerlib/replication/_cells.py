@@ -1,4 +1,4 @@
-"""What the tables of claims and of deviations have in common, in Markdown."""
+"""Common parts of the tables of claims and documented deviations, in Markdown."""
 
 
 def badge(kind, word):
@@ -7,7 +7,7 @@ def badge(kind, word):
 
 
 def link(entry):
-    """Return the way to the cell of a chapter that a claim or a deviation names."""
+    """Return the link to the cell of a chapter that a record names."""
     page = entry.page.replace("_", " ")
     return f'<a href="{entry.page}.html#cell-{entry.cell}">{page}</a>'
 

@@ -1,4 +1,4 @@
-"""The claims of a document, one by one."""
+"""Claims of a document, as records."""
 
 from .. import _checks, _toml
 from .._records import record
@@ -11,7 +11,7 @@ RELATIONS = ("<", "<=", ">", ">=")
 
 @record
 class Claim:
-    """One claim of a document, as its ``claims.toml`` tells it.
+    """One claim of a document, an entry of its ``claims.toml``.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where a document leaves something open or contradicts itself, and what was chosen instead."""
+"""Documented deviations: gaps and contradictions of a document, and our choices."""
 
 from .. import _checks, _toml
 from .._records import record
@@ -10,7 +10,7 @@ KINDS = ("gap", "contradiction", "misprint", "departure")
 
 @record
 class Deviation:
-    """One place at which a document cannot be followed to the letter.
+    """One place where a document could not be followed, and our choice instead.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Deviation:
 
 @record
 class Deviations:
-    """Deviations that a notebook shows as a table, with links to the cells where they matter.
+    """Documented deviations, shown as a table with links to cells of chapters.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Deviations:
 
 
 def read_deviations(path: FileSource) -> Deviations:
-    """Read the deviations from a document.
+    """Read the documented deviations from a document.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The documents that are replicated, by their names: claims and deviations of each."""
+"""The replicated documents, by name: claims and documented deviations."""
 
 from importlib.resources.abc import Traversable
 
@@ -11,7 +11,7 @@ from .deviations import Deviations, read_deviations
 
 @record
 class Document:
-    """What is on record about a document.
+    """Claims and documented deviations of a document.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ def data_file(document: str, name: str) -> Traversable:
 
 
 def read_document(name: str) -> Document:
-    """Read what is on record about a document.
+    """Read the claims and documented deviations of a document.
 
     Parameters
     ----------

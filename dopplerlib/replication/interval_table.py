@@ -1,4 +1,4 @@
-"""Medians or means with their intervals, as a table for a page."""
+"""Tables of medians or means with confidence intervals."""
 
 from typing import Literal
 
@@ -16,7 +16,7 @@ _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 def interval_table(
     rows: dict[str, dict[str, ArrayLike]], statistic: Literal["median", "mean"] = "median"
 ) -> Table:
-    """Return a table of medians, or means, over runs, with two digits and 95 % intervals.
+    """Return a table of medians or means over runs, with two digits and 95 % intervals.
 
     Parameters
     ----------

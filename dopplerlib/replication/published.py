@@ -1,4 +1,4 @@
-"""The numbers that a document reports, as records that know where they stand."""
+"""Reported numbers of a document, as records with their place in it."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ _OWN = ("file", "where", "table")  # fields, which no entry may hide
 
 @record
 class Published:
-    """One table of a file: its entries are attributes, tables in it are records like this one.
+    """One table of reported numbers: entries are attributes, tables in it are records, too.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Evidence on a claim that one number cannot be: many runs, or several ways to read the claim."""
+"""Evidence on a claim from many runs, or under several interpretations."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ from .._records import record
 
 @record
 class Draws:
-    """Evidence on the outcome of a random run: what it is in many runs of ours.
+    """Evidence on the outcome of a random run: the outcomes of many runs of ours.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class Draws:
 
 @record
 class Readings:
-    """Evidence on a claim that leaves something open: one piece for each way to read it.
+    """Evidence on an ambiguous claim: one piece for each interpretation.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The verdicts on all claims of a document, as a table for a page."""
+"""Scorecards: the verdicts on all claims of a document, as a table."""
 
 from collections import Counter
 
@@ -14,7 +14,7 @@ from .verdicts import Judgment
 
 @record
 class Scorecard:
-    """Judgments that a notebook shows as a table, with links to the cells behind them.
+    """Judgments, shown as a table with links to the cells behind them.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The verdict on a claim: what the document says beside what we find."""
+"""Verdicts: comparison of claims with our evidence."""
 
 from collections.abc import Iterable
 from reprlib import repr as short
@@ -21,7 +21,7 @@ _HOLDS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_e
 
 @record
 class Judgment:
-    """A verdict and what it rests on.
+    """A verdict, with the claim and the evidence behind it.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""From a moving target to IQ samples, and from IQ samples to Doppler shifts."""
+"""IQ samples of moving targets, and Doppler shifts from IQ samples."""
 
 from .._lazy import attach
 

@@ -1,4 +1,4 @@
-"""What the estimators share that look at the bins of a discrete Fourier transform."""
+"""Common parts of the estimators that use the bins of a discrete Fourier transform."""
 
 import numpy as np
 import scipy.fft
@@ -61,7 +61,7 @@ def ratio(a, b):
 
 
 def limits(band, fs):
-    """Return the ends of the band in Hz, and whether it is all that the sampling rate tells apart.
+    """Return the ends of the band in Hz, and whether it is as wide as the sampling rate.
 
     None is the band around zero.
     """

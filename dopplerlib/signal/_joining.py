@@ -1,4 +1,4 @@
-"""Recordings of one sensor or more each, made one over the time that they have in common."""
+"""Alignment of recordings over the time that they have in common."""
 
 import pathlib
 from collections.abc import Callable, Iterable, Iterator
@@ -19,7 +19,7 @@ _LIKELY = 0.6  # share of strong windows whose lines turn: 1 for I and Q, 0 to 0
 
 
 class Source(NamedTuple):
-    """What is known of a file before its samples are read."""
+    """Metadata of a file, known before its samples are read."""
 
     name: str  # of the file
     fs: float
@@ -33,7 +33,7 @@ class Source(NamedTuple):
 
 
 def align(recordings: Iterable[Recording]) -> Recording:
-    """Join recordings that have the same clock, over the time that they have in common.
+    """Align recordings of one clock over the time that they have in common.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def existing(paths, found=lambda path: path):
 
 
 def overlap(sources, first=0, count=None):
-    """Return where each source begins, how many samples are to be read, and the time of the first.
+    """Return the first sample of each source, the number to read, and the time of the first.
 
     `first` and `count` are samples of what all of them have in common.
     """
@@ -133,8 +133,8 @@ def overlap(sources, first=0, count=None):
             other = next(source for source in sources if source.length != one.length)
             raise ValueError(
                 f"{other.name} must have the number of samples of {one.name}, {one.length}, if "
-                f"nothing tells their start, got {other.length}; with a start for each they are "
-                f"aligned, and if they started together, count={min(lengths)} reads what they share"
+                f"they state no start, got {other.length}; with a start for each they are "
+                f"aligned, and if they started together, count={min(lengths)} reads all of them"
             )
     else:
         start = max(source.start for source in sources)
@@ -202,7 +202,7 @@ def _fill(rows, source, first, kind):
 
 
 def _kind(sources, layout):
-    """Return the layout of the channels of files: the one that is told, or the usual one."""
+    """Return the layout of the channels of files: the given one, or the usual one."""
     if layout is not None:
         _checks.one_of("layout", layout, LAYOUTS)
     kind = layout or ("real" if sources[0].real else "iq")
@@ -227,7 +227,7 @@ def _check_kind(sources, x, valid, kind):
         still = np.flatnonzero(turns < _LIKELY)
         if len(still):
             raise ValueError(
-                f"layout must be told for {names}, since I and Q of sensor {still[0]} do not turn "
+                f"layout must be given for {names}, since I and Q of sensor {still[0]} do not turn "
                 f"together (in {turns[still[0]]:.0%} of the windows with a strong line): 'real' if "
                 "each channel is a sensor of its own, 'iq' if they are I and Q all the same, "
                 "got None"
@@ -236,6 +236,6 @@ def _check_kind(sources, x, valid, kind):
         turns = turning(x[::2] + 1j * x[1::2], valid[::2] & valid[1::2], sources[0].fs)
         if np.nanmin(turns, initial=np.inf) >= _LIKELY and np.isfinite(turns).any():
             raise ValueError(
-                f"layout must be told for {names}, since pairs of channels turn together: 'iq' if "
+                f"layout must be given for {names}, since pairs of channels turn together: 'iq' if "
                 "they are I and Q, 'real' if each is a sensor of its own, got None"
             )

@@ -1,4 +1,4 @@
-"""A recording: IQ samples of several sensors, and which of them are measurements."""
+"""A recording: IQ samples of several sensors, with the mask of valid samples."""
 
 from datetime import UTC, datetime, timedelta
 
@@ -12,7 +12,7 @@ from .validity import valid_samples
 
 @record
 class Recording:
-    """IQ samples of several sensors, with what is needed to make Doppler shifts of them.
+    """IQ samples of several sensors, with sampling rate, carrier, start and validity.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class Recording:
 
 
 def utc(name, start):
-    """Return a moment in UTC, or None if that is what it is; raise if it is neither."""
+    """Return a datetime in UTC, or None for None; raise for anything else."""
     if start is None:
         return None
     if not isinstance(start, datetime) or start.utcoffset() is None:
@@ -110,7 +110,7 @@ def utc(name, start):
 
 
 def later(start, seconds):
-    """Return the moment so many seconds after `start`, or None if `start` is."""
+    """Return the time a number of seconds after `start`, or None if `start` is."""
     if start is None:
         return None
     return _moment("start", start, lambda: start + timedelta(seconds=seconds))
@@ -121,7 +121,7 @@ def _moment(name, start, shifted):
         return shifted()
     except OverflowError:
         raise ValueError(
-            f"{name} must be a moment in the years 1 to 9999 of UTC, got {start}"
+            f"{name} must be a time in the years 1 to 9999 of UTC, got {start}"
         ) from None
 
 
@@ -150,5 +150,5 @@ def numbers_to_store(recording, kind):
 
 
 def first_line(error):
-    """Return what an error says, in a line."""
+    """Return the first line of the text of an error."""
     return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__

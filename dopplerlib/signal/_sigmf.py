@@ -1,4 +1,4 @@
-"""Recordings as SigMF: samples in one file, what they are in another, or both in an archive."""
+"""Recordings as SigMF: samples and metadata in two files, or both in an archive."""
 
 import hashlib
 import pathlib
@@ -199,7 +199,9 @@ def _source(path, carrier, whole):
             if hashlib.sha512(raw).hexdigest() != info["core:sha512"].lower():
                 raise ValueError("the hash of its samples must be core:sha512, got another one")
     except (ValueError, OSError, RecursionError) as error:
-        raise ValueError(f"{path.name} is no sound SigMF recording: {first_line(error)}") from None
+        raise ValueError(
+            f"{path.name} is not a valid SigMF recording: {first_line(error)}"
+        ) from None
     rate = info.get("core:sample_rate")
     told = content["captures"][0].get("core:frequency") if content["captures"] else None
     if None not in (carrier, told) and carrier != told:
@@ -207,7 +209,7 @@ def _source(path, carrier, whole):
     carrier = carrier if told is None else told
     for name, value in (("sampling rate", rate), ("carrier frequency", carrier)):
         if value is None or not value > 0:
-            raise ValueError(f"{path.name} must tell a positive {name}, got {value}")
+            raise ValueError(f"{path.name} must state a positive {name}, got {value}")
     values = raw.view(number).reshape(-1, channels)
 
     def blocks(first, count):

@@ -1,4 +1,4 @@
-"""Metadata of SigMF: what they must be, and what they say of time and validity."""
+"""Metadata of SigMF: checks, and the times and the validity of samples."""
 
 import json
 import re
@@ -92,7 +92,7 @@ def segments(content, frames):
 
 
 def _gap(one, two, count, fs):
-    """Return how many samples are missing between two captures, the first of `count` samples."""
+    """Return the number of missing samples between two captures, the first of `count` samples."""
     names = ("core:global_index", "core:datetime")
     (a, _), (b, digit) = _time(one), _time(two)
     if names[0] in one and names[0] in two:
@@ -108,7 +108,7 @@ def _gap(one, two, count, fs):
 
 
 def _time(capture):
-    """Return the time of a capture in UTC, and how much its last digit is in s."""
+    """Return the time of a capture in UTC, and the value of its last digit in s."""
     text = capture.get("core:datetime")
     if text is None:
         return None, 0.0
@@ -127,7 +127,7 @@ def invalid_runs(valid):
 
 
 def which_invalid(content, sensors):
-    """Return a function of (first, count) that tells invalid samples, bool (sensors, count)."""
+    """Return a function of (first, count) that gives the invalid samples, bool (sensors, count)."""
     runs = content["global"].get(INVALID, [])
     if not isinstance(runs, list) or not all(
         isinstance(run, list)

@@ -164,9 +164,9 @@ def read_wav(
 def _source(path, carrier, start):
     with _sound(path) as sound:
         if sound.subtype not in _SUBTYPES:
-            raise ValueError(f"it must hold samples without loss, got {sound.subtype_info}")
+            raise ValueError(f"it must hold samples of a lossless format, got {sound.subtype_info}")
         if sound.frames > _MOST:  # FLAC to a pipe, in which libsndfile does not find its way
-            raise ValueError("its header must tell the number of samples, got none: convert it")
+            raise ValueError("its header must state the number of samples, got none")
         fs, length, channels = float(sound.samplerate), sound.frames, sound.channels
 
     def blocks(first, count):
@@ -184,7 +184,7 @@ def _source(path, carrier, start):
 
 @contextmanager
 def _sound(path):
-    """Give a file of sound to read from; what is wrong with it becomes a ValueError."""
+    """Give a sound file to read from; any fault of it becomes a ValueError."""
     require("soundfile", extra="wav")
     from soundfile import LibsndfileError, SoundFile
 
@@ -199,6 +199,6 @@ def _sound(path):
             with SoundFile(file) as sound:
                 yield sound
     except LibsndfileError as error:
-        raise ValueError(f"{path.name} is no sound {kind} file: {error.error_string}") from None
+        raise ValueError(f"{path.name} is not a valid {kind} file: {error.error_string}") from None
     except (ValueError, OSError) as error:
-        raise ValueError(f"{path.name} is no sound {kind} file: {first_line(error)}") from None
+        raise ValueError(f"{path.name} is not a valid {kind} file: {first_line(error)}") from None

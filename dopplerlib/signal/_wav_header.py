@@ -1,4 +1,4 @@
-"""The chunks of a WAV file, looked at before a library reads it: what was cut must not pass."""
+"""The chunks of a WAV file, checked before a library reads it: truncated files are refused."""
 
 import io
 import struct
@@ -14,7 +14,7 @@ _MOST = 10_000  # chunks
 
 
 class Header(NamedTuple):
-    """What a WAV file says of itself."""
+    """The header of a WAV file."""
 
     fs: int
     channels: int
@@ -25,7 +25,7 @@ class Header(NamedTuple):
 
 
 def header(file):
-    """Return the header of an open WAV file, or raise unless all samples that it tells are there.
+    """Return the header of an open WAV file, or raise if samples that it states are missing.
 
     A length that the writer did not know means "until the end of the file".
     """

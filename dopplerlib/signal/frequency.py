@@ -1,4 +1,4 @@
-"""A tone's frequency by maximum likelihood: alone, or together with a constant."""
+"""Maximum-likelihood frequency of a tone, without or with an unknown DC offset."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,7 @@ _NEAREST = 1e-3  # bins from the constant: nearer than that a tone cannot be tol
 
 
 def ml_frequency(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
-    """Return the frequency at which the periodogram is highest.
+    """Return the maximum-likelihood frequency of a tone, the highest peak of the periodogram.
 
     For one tone in white noise this is the maximum of the likelihood, amplitude and phase
     unknown. It is found to rounding: the unpadded transform is refined by Newton's method, at every
@@ -72,7 +72,7 @@ def peaks(
     fs: float,
     band: Sequence[float] | None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return frequency and power of the highest peak in each of many windows, unchecked.
+    """Return frequency and power of the highest peak in each of many windows; unchecked.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def peaks(
 
 
 def ml_frequency_dc(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
-    """Return the frequency of a tone beside an unknown constant, by maximum likelihood.
+    """Return the maximum-likelihood frequency of a tone with an unknown DC offset.
 
     Parameters
     ----------

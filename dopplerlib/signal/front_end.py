@@ -1,4 +1,4 @@
-"""The digital low-pass, and the rate that is enough after it."""
+"""Low-pass filter and decimation."""
 
 from typing import overload
 
@@ -18,7 +18,7 @@ def lowpass(
     x: ArrayLike, fs: float, cutoff: float, taps: int, valid: ArrayLike
 ) -> tuple[ComplexArray, float, BoolArray]: ...
 def lowpass(x, fs, cutoff, taps, valid=None):
-    """Return IQ samples after a low-pass of linear phase, and by how much it delays them.
+    """Return low-pass filtered IQ samples, and the delay of the linear-phase filter.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def lowpass_decimate(
     x: ArrayLike, fs: float, factor: int, taps: int | None = None, *, valid: ArrayLike
 ) -> tuple[ComplexArray, float, float, BoolArray]: ...
 def lowpass_decimate(x, fs, factor, taps=None, valid=None):
-    """Return IQ samples at a lower rate, low-passed before, and by how much they are delayed.
+    """Return low-pass filtered and decimated IQ samples, and their delay.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""FSK and MFSK: two signals sent in turn, and the phase between their echoes.
+"""Radar waveforms: FSK and MFSK, two interleaved signals with the phase between their echoes.
 
 Signals and targets are those of `waveforms`.
 """
@@ -16,7 +16,7 @@ _MOST = 2**22  # samples of a signal
 def fsk_beats(
     radar: ChirpRadar, targets: ArrayLike, *, step: float = 1e6, samples: int = 512
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the beat signals of two tones sent in turn.
+    """Return the beat signals of two alternating tones.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def _pair(radar, a, b):
 
 
 def _stepped(radar, steps, shift):
-    """Return the step of a chirp in Hz, how long it lasts in s, and the shift in Hz."""
+    """Return the step of a chirp in Hz, its duration in s, and the shift in Hz."""
     _checks.instance("radar", radar, ChirpRadar)
     steps = _checks.count("steps", steps, _MOST, least=3)
     up = radar.bandwidth / (steps - 1)

@@ -1,4 +1,4 @@
-"""What a cheap receiver does to IQ samples, and how some of it is taken back."""
+"""Receiver impairments of IQ samples, and their correction."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ _DIFFERENT = 1e-12  # share of the powers' product: less than that is rounding
 
 
 def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
-    """Return IQ samples with a constant added, as leakage of the carrier adds it.
+    """Add a DC offset to IQ samples, as carrier leakage does.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
 
 @_checks.quiet
 def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
-    """Return IQ samples less their mean over the last axis.
+    """Subtract the mean of IQ samples over the last axis.
 
     The mean of a tone is not zero unless the record holds whole cycles of it: this takes part of a
     slow tone away. See `ml_frequency_dc`.
@@ -89,7 +89,7 @@ def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
 
 
 def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexArray:
-    """Return IQ samples of a mixer whose branches differ.
+    """Add the I/Q imbalance of a mixer to IQ samples.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexA
 
 
 def image_rejection(gain_db: float, phase_deg: float) -> float:
-    """Return the power of a tone over that of its mirror image.
+    """Return the ratio of the power of a tone to that of its image.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def image_rejection(gain_db: float, phase_deg: float) -> float:
 
 
 def correct_iq_imbalance(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
-    """Return IQ samples with branches of equal power and at right angles.
+    """Correct the I/Q imbalance of IQ samples: branches of equal power, and uncorrelated.
 
     Gain and angle are found from the samples themselves: in those of an ideal mixer I and Q have
     equal power and no correlation, over whole cycles or in the long run. A constant has to be
@@ -201,7 +201,7 @@ def correct_iq_imbalance(x: ArrayLike, valid: ArrayLike | None = None) -> Comple
 
 
 def branches_differ(x: ArrayLike, valid: ArrayLike | None = None) -> BoolArray:
-    """Return in which records I and Q are not proportional, so that they tell a direction.
+    """Return the records whose I and Q are not proportional, so that the sign of Doppler is known.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def branches_differ(x: ArrayLike, valid: ArrayLike | None = None) -> BoolArray:
 
 
 def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
-    """Return IQ samples as a converter with a limited number of bits gives them.
+    """Quantize IQ samples to the resolution of an analog-to-digital converter.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
 
 
 def _moments(x, valid):
-    """Return mean squares and product of I and Q, and what of Q does not follow I (..., 1)."""
+    """Return mean squares and product of I and Q, and the part of Q orthogonal to I (..., 1)."""
     x = in_range(x)
     count = x.shape[-1] if valid is None else valid.sum(axis=-1, keepdims=True)
     ii, iq, qq = (

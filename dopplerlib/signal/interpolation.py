@@ -1,4 +1,4 @@
-"""A tone's frequency from the highest bins of a Fourier transform, in closed form.
+"""Frequency of a tone by interpolation between bins of a Fourier transform.
 
 All take IQ samples ``x (..., n)`` and give frequencies ``(...)`` in Hz, positive when the target
 approaches. They look for the highest bin in the ``band``, (lowest, highest) in Hz; None is from
@@ -63,7 +63,7 @@ def parabolic(
     nfft: int | None = None,
     scale: Literal["magnitude", "log"] = "magnitude",
 ) -> FloatArray:
-    """Return the vertex of the parabola through the highest bin and its two neighbors.
+    """Return the vertex of the parabola through the highest bin and its neighbors.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def parabolic(
 def parabolic_three_highest(
     x: ArrayLike, fs: float, band: Sequence[float] | None = None, nfft: int | None = None
 ) -> FloatArray:
-    """Return the vertex of the parabola through the three highest bins, wherever they are.
+    """Return the vertex of the parabola through the three highest bins, adjacent or not.
 
     For comparison only: without padding the third highest bin is often no neighbor of the
     highest, and noise decides where it is.
@@ -151,7 +151,7 @@ def parabolic_three_highest(
 
 
 def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
-    """Return the estimate of Jacobsen and Kootsookos from three complex bins.
+    """Return the frequency by Jacobsen and Kootsookos, from three complex bins.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Fl
 
 
 def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
-    """Return the estimate of `jacobsen` without its bias for short windows.
+    """Return the frequency by Candan: `jacobsen` with a correction of its bias.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
 
 
 def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
-    """Return Quinn's first estimate: from the highest bin and the neighbor on the tone's side.
+    """Return Quinn's first estimate, from the highest bin and the neighbor on the tone's side.
 
     Parameters
     ----------
@@ -291,7 +291,7 @@ def quinn2(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
 def aboutanios_mulgrew(
     x: ArrayLike, fs: float, band: Sequence[float] | None = None, iterations: int = 2
 ) -> FloatArray:
-    """Return the estimate that compares the power half a bin to the left and to the right.
+    """Return the frequency by Aboutanios and Mulgrew, from Fourier sums half a bin off the peak.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a frequency estimate can reach: bounds, windows, thresholds, correlation of windows."""
+"""Performance of frequency estimates: bounds, thresholds, window lengths, correlation."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ _VARIANCE = 6 / (2 * np.pi) ** 2
 
 @_checks.quiet
 def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: float) -> FloatArray:
-    """Return the smallest standard deviation of an unbiased estimate of a tone's frequency.
+    """Return the Cramér-Rao bound on the standard deviation of a tone's frequency.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: float) -> FloatArray:
 
 @_checks.quiet
 def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> FloatArray:
-    """Return the smallest standard deviation of such an estimate beside an unknown constant.
+    """Return the Cramér-Rao bound on a tone's frequency with an unknown DC offset.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> Fl
 
 @_checks.quiet
 def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
-    """Return the length of the window in which a tone's frequency can be known so well.
+    """Return the window length at which the bound on the frequency has a given standard deviation.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
 
 @_checks.quiet
 def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
-    """Return the signal-to-noise ratio of a whole window that such an estimate needs.
+    """Return the integrated signal-to-noise ratio for a given standard deviation of the frequency.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
 
 @_checks.quiet
 def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatArray:
-    """Return how often noise makes a higher peak than the tone does.
+    """Return the probability of an outlier: a peak of the noise above that of the tone.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatAr
 
 
 def overlap_correlation(tau: ArrayLike) -> FloatArray:
-    """Return the correlation of the errors of two overlapping windows.
+    """Return the correlation between the errors of two overlapping windows.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def overlap_correlation(tau: ArrayLike) -> FloatArray:
 
 
 def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
-    """Return the correlation of the errors of two overlapping windows of n samples.
+    """Return the correlation between the errors of two overlapping windows of n samples.
 
     Parameters
     ----------
@@ -294,7 +294,7 @@ def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
 
 @_checks.quiet
 def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
-    """Return the best length of a window whose estimate is used as the frequency at its end.
+    """Return the optimal window length for the frequency at the end of the window.
 
     Parameters
     ----------
@@ -332,7 +332,7 @@ def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
 
 @_checks.quiet
 def optimal_window_center(cn0: ArrayLike, curvature: ArrayLike) -> FloatArray:
-    """Return the best length of a window whose estimate is used as the frequency at its middle.
+    """Return the optimal window length for the frequency at the middle of the window.
 
     Parameters
     ----------

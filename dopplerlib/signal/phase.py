@@ -1,4 +1,4 @@
-"""A tone's frequency from how the phase turns between samples, without any spectrum."""
+"""Frequency of a tone from phase differences between samples."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from ._bins import limits, samples, still_windows
 
 
 def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
-    """Return the weighted mean of the phase steps between neighboring samples.
+    """Return Kay's weighted mean of phase differences, as a frequency.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatAr
 def pulse_pair(
     x: ArrayLike, fs: float, band: Sequence[float] | None = None, lag: int = 1
 ) -> FloatArray:
-    """Return the phase of the autocorrelation at one lag, as a frequency.
+    """Return the pulse-pair frequency: the phase of the autocorrelation at one lag.
 
     Parameters
     ----------

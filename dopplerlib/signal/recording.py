@@ -1,4 +1,4 @@
-"""IQ records on disk: SigMF and WAV, as one file for all sensors or one for each."""
+"""Recordings of IQ samples: SigMF, WAV and FLAC, one file for all sensors or one for each."""
 
 from ._joining import align
 from ._recording import Recording

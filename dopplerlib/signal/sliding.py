@@ -1,4 +1,4 @@
-"""From a record of IQ samples to a record of Doppler shifts, each with the time it belongs to."""
+"""Doppler shifts in sliding windows of IQ samples, with their timestamps."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
@@ -21,7 +21,7 @@ _FINEST = 1e-6  # bins: so much the search for the peak leaves, see `_ml_kernel`
 
 @record
 class DopplerRecord:
-    """Doppler shifts from windows of IQ samples.
+    """Doppler shifts in windows of IQ samples.
 
     A window may be weak, or hold samples that are no measurements: then `frequency` says little or
     nothing, and the others are to go on. For a filter, take `measurements()`.
@@ -89,7 +89,7 @@ class DopplerRecord:
 
     @property
     def snr(self) -> FloatArray:
-        """Measured signal-to-noise ratio of a sample, not in dB, shape (..., K, S).
+        """Measured signal-to-noise ratio per sample, not in dB, shape (..., K, S).
 
         Without bias for a tone well above the noise: the power that noise adds at the peak is taken
         off, and so is what the mean of 1 / noise_variance is too large. Noise alone may leave it
@@ -105,7 +105,7 @@ class DopplerRecord:
 
     @property
     def frequency_std(self) -> FloatArray:
-        """Standard deviation of each frequency in Hz, if it reaches the bound at `snr`.
+        """Standard deviation of each frequency in Hz, by the Cramér-Rao bound at `snr`.
 
         Infinite where `snr` is not positive: no such window tells a frequency. It is a millionth of
         a bin at least, which is what the search for the peak leaves, so that it is not zero in a
@@ -124,7 +124,7 @@ class DopplerRecord:
         return np.where(snr > 0, np.maximum(np.where(usual, bound, 0.0), finest), np.inf)
 
     def measurements(self) -> tuple[FloatArray, FloatArray]:
-        """Return frequencies and their deviations as `ekf` and `ml_initialize` take them.
+        """Return frequencies and standard deviations as `ekf` and `ml_initialize` take them.
 
         Returns
         -------
@@ -147,7 +147,7 @@ class DopplerRecord:
         return np.where(known, self.frequency, np.nan), np.where(known, std, self.fs)
 
     def _size(self):
-        """Return what a tone of amplitude 1 leaves of the n samples' energy beside a constant."""
+        """Return the energy of a tone of amplitude 1 in n samples, less that of its mean."""
         n = self.window
         if not self.dc_fitted:
             return n
@@ -166,7 +166,7 @@ def sliding_doppler(
     timestamp: Literal["center", "end", "start"] = "center",
     valid: ArrayLike | None = None,
 ) -> DopplerRecord:
-    """Return the Doppler shifts in windows that slide over IQ samples.
+    """Return the Doppler shifts in sliding windows of IQ samples.
 
     Parameters
     ----------
@@ -269,10 +269,10 @@ def _by_call(records, fs, n, firsts, estimator, band):
         x = windows[rows[part], starts[part]]
         with np.errstate(divide="ignore", invalid="ignore"):  # windows of zeros
             found = _checks.called("estimator", estimator, x, fs, band)
-        found = _checks.real("what estimator returns", found)
+        found = _checks.real("estimator(x, fs, band)", found)
         if found.shape != x.shape[:-1]:
             raise ValueError(
-                f"what estimator returns must have shape {x.shape[:-1]}, got {found.shape}"
+                f"estimator(x, fs, band) must have shape {x.shape[:-1]}, got {found.shape}"
             )
         found = np.where(np.isfinite(found) & ~still[part], found, np.nan)
         if constant:

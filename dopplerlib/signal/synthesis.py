@@ -1,4 +1,4 @@
-"""IQ samples of moving targets: a tone, a course of velocity, or a path before an array."""
+"""Simulated IQ samples: tones, radial velocities, paths in front of an array."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -16,7 +16,7 @@ _AMPLITUDES = {"constant": 0, "r^-2": -2}
 def velocity_profile(
     t: ArrayLike, v0: float, segments: Sequence[tuple[float, float, float]]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return a velocity that is accelerated during some intervals and constant otherwise.
+    """Return a velocity with constant acceleration in some intervals and none between them.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def iq_from_velocity(
     rng: np.random.Generator,
     size: int | None = None,
 ) -> ComplexArray:
-    """Return what one sensor sees of a target whose radial velocity is known.
+    """Return the IQ samples of one sensor for a radial velocity.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def iq_from_geometry(
     amplitude: Literal["constant", "r^-2"] = "constant",
     size: int | None = None,
 ) -> ComplexArray:
-    """Return what every sensor of an array sees of a target on a path.
+    """Return the IQ samples of every sensor of an array for a target on a path.
 
     Parameters
     ----------

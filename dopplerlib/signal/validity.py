@@ -1,4 +1,4 @@
-"""Which samples are measurements: decided on the raw ones, before any mean or filter."""
+"""Validity of raw samples: clipped, dead, lost or loud ones are no measurements."""
 
 from typing import overload
 
@@ -31,7 +31,7 @@ def valid_samples(
     longest_run: int | None = None,
     false_alarm: float = 1e-9,
 ) -> BoolArray:
-    """Return which samples are measurements.
+    """Return the mask of valid samples.
 
     A module that is dead, stuck, cut off or driven into its stops gives samples too, and after a
     mean is taken off or a filter has run they look like a perfect tone at 0 Hz. So this is to be
@@ -123,7 +123,7 @@ def known_samples(
     name: str, x: ArrayLike, valid: ArrayLike, shape: tuple[int | None, ...]
 ) -> tuple[ComplexArray, BoolArray]: ...
 def known_samples(name, x, valid, shape):
-    """Return samples with zeros where they are not valid, and the mask.
+    """Return samples with zeros in place of invalid ones, and the mask of valid samples.
 
     `name` and `shape` come from a function that calls it, and are unchecked.
 
@@ -251,7 +251,7 @@ def _loud(row, noise):
 
 
 def _longest_natural(length, sigma, chance):
-    """Return how long each run (R,) may be, by those around it and noise of `sigma` steps."""
+    """Return the longest natural length of each run (R,), by those around it and the noise."""
     count = min(len(length), _NEIGHBORS)
     blocks = -(-len(length) // _NEIGHBORS)
     first = np.minimum(np.arange(blocks) * _NEIGHBORS, len(length) - count)

@@ -1,4 +1,4 @@
-"""Pulses and chirps of a radar on simulated signals: what they measure, and what they confuse.
+"""Radar waveforms: pulse trains, linear chirps and rapid chirps.
 
 All signals are at complex baseband, after mixing with what is sent (the pulse: with the carrier).
 Targets are rows of range in m and range rate in m/s, positive when receding; echoes have amplitude
@@ -20,7 +20,7 @@ _MOST = 2**25  # samples of all targets together
 
 @record
 class ChirpRadar:
-    """A radar that sweeps a bandwidth, and how long it takes for one measurement.
+    """Bandwidth and duration of the sweep of a chirp radar.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class ChirpRadar:
         return self.wavelength / 2 / self.duration
 
     def speed_limit(self, chirps: int = 512) -> float:
-        """Return the largest range rate in m/s that a number of rapid chirps leaves unambiguous.
+        """Return the largest unambiguous range rate in m/s of a number of rapid chirps.
 
         A Doppler shift of half the rate of the chirps: lambda / (4 T_chirp).
         """
@@ -188,7 +188,7 @@ def chirp_beat(
     samples: int = 1024,
     begin: float = 0.0,
 ) -> ComplexArray:
-    """Return the beat signal of one linear chirp: what was sent times the conjugate echo.
+    """Return the beat signal of one linear chirp: the transmitted signal times the conjugate echo.
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def strongest_tones(signal: ArrayLike, rate: float, count: int) -> FloatArray:
 def chirp_intersections(
     relations: ArrayLike, frequencies: Iterable[ArrayLike]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return every target that explains one tone of each of the first two chirps.
+    """Return the intersections in range and range rate of the tones of the first two chirps.
 
     Parameters
     ----------
@@ -414,7 +414,7 @@ def rapid_chirps(
 def range_doppler_map(
     radar: ChirpRadar, signal: ArrayLike
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return power over range and range rate: an FFT of each chirp, then one across the chirps.
+    """Return the range-Doppler map: an FFT of each chirp, then one across the chirps.
 
     Parameters
     ----------
@@ -459,7 +459,7 @@ def range_doppler_map(
 
 
 def occupied_cells(power: ArrayLike, drop: float = 10.0) -> tuple[int, int]:
-    """Return how many cells of a map an echo fills, in range and in range rate.
+    """Return the number of cells that an echo occupies in range and in range rate.
 
     Parameters
     ----------
@@ -489,7 +489,7 @@ def occupied_cells(power: ArrayLike, drop: float = 10.0) -> tuple[int, int]:
 
 
 def strongest_cell(r: ArrayLike, v: ArrayLike, power: ArrayLike) -> tuple[float, float]:
-    """Return range and range rate of the highest peak of a map.
+    """Return range and range rate of the highest peak of a range-Doppler map.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Many detections and many targets: gates, association, and the life of a track."""
+"""Gating, data association, track management and fusion."""
 
 from .._lazy import attach
 

@@ -1,4 +1,4 @@
-"""Which detection belongs to which track."""
+"""Data association: nearest neighbor, greedy, global nearest neighbor."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from .._typing import ArrayLike, IntArray
 
 @_checks.quiet
 def nearest_neighbor(distance: ArrayLike, accept: ArrayLike | None = None) -> IntArray:
-    """Return the nearest of the detections that are accepted.
+    """Return the nearest neighbor among the accepted detections.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def nearest_neighbor(distance: ArrayLike, accept: ArrayLike | None = None) -> In
 
 @_checks.quiet
 def greedy_assign(cost: ArrayLike, gate: float) -> IntArray:
-    """Return an assignment that takes the cheapest pair first, then the cheapest of the rest.
+    """Return the greedy assignment: the cheapest pair first, then the cheapest of the rest.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def greedy_assign(cost: ArrayLike, gate: float) -> IntArray:
 
 @_checks.quiet
 def gnn_assign(cost: ArrayLike, gate: float) -> IntArray:
-    """Return the assignment of least total cost: the global nearest neighbor.
+    """Return the global-nearest-neighbor assignment, that of least total cost.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A position in the plane from two ranges."""
+"""Bilateration: a position in the plane from two ranges."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from .._typing import ArrayLike, BoolArray, FloatArray
 def bilaterate(
     d1: ArrayLike, d2: ArrayLike, baseline: float
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Return where two circles about two radars on the x axis meet, on the side of positive y.
+    """Return the position with y > 0 at given ranges from two radars on the x axis.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Two estimates of one state made into one, and what each way takes for granted."""
+"""Fusion of two estimates of one state."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..estimation import gaussian
 def fuse_state_vectors(
     x1: ArrayLike, P1: ArrayLike, x2: ArrayLike, P2: ArrayLike, P12: ArrayLike | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """Fuse two estimates by their covariances, with or without what they have in common.
+    """Fuse two estimates with known cross-covariance (zero by default).
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def cross_covariance_step(
     K2: ArrayLike,
     H2: ArrayLike,
 ) -> FloatArray:
-    """Return the covariance between the errors of two filters after one more cycle.
+    """Return the cross-covariance of the errors of two filters after one more cycle.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def cross_covariance_step(
 def covariance_intersection(
     x1: ArrayLike, P1: ArrayLike, x2: ArrayLike, P2: ArrayLike, w: ArrayLike | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """Fuse two estimates of which nobody knows what they have in common.
+    """Fuse two estimates with unknown cross-correlation.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def covariance_intersection(
 def fuse_measurements(
     z1: ArrayLike, R1: ArrayLike, z2: ArrayLike, R2: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the weighted mean of two independent measurements of the same thing.
+    """Fuse two independent measurements of the same quantity.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Which measurements may belong to a track."""
+"""Gates: ellipsoidal (chi-square) and box-shaped."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from .._typing import ArrayLike, BoolArray
 
 @_checks.quiet
 def chi2_gate(nis: ArrayLike, m: int, gate_probability: float) -> BoolArray:
-    """Return where a measurement is inside the gate of this probability.
+    """Return whether measurements are inside the chi-square gate of a probability.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def chi2_gate(nis: ArrayLike, m: int, gate_probability: float) -> BoolArray:
 
 @_checks.quiet
 def fixed_box_gate(innovation: ArrayLike, half_widths: ArrayLike) -> BoolArray:
-    """Return where every component of the innovation is inside a box of fixed size.
+    """Return whether innovations are inside a box of fixed size.
 
     Parameters
     ----------

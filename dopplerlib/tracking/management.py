@@ -1,4 +1,4 @@
-"""The life of a track: tentative at first, confirmed by repeated detections, deleted at the end."""
+"""Track management: tentative, confirmed and deleted tracks (M of N)."""
 
 from .. import _checks
 from .._records import record
@@ -8,7 +8,7 @@ TENTATIVE, CONFIRMED, DELETED = "tentative", "confirmed", "deleted"
 
 @record
 class TrackLife:
-    """Where a track stands in its life.
+    """Status and detection history of a track.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class TrackLife:
 
 @record
 class TrackManager:
-    """The rules by which tracks are confirmed and deleted.
+    """Rules for the confirmation and deletion of tracks.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class TrackManager:
             raise ValueError(f"hits must be at most window = {self.window}, got {self.hits}")
 
     def start(self) -> TrackLife:
-        """Return the life of a track that one detection has just started.
+        """Return the status of a new track, after its first detection.
 
         Returns
         -------
@@ -97,7 +97,7 @@ class TrackManager:
         return TrackLife(status, recent=(True,), age=1, misses=0)
 
     def advance(self, life: TrackLife, detected: bool) -> TrackLife:
-        """Return the life of a track after one more scan.
+        """Return the status of a track after one more scan.
 
         Parameters
         ----------

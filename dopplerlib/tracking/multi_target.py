@@ -1,4 +1,4 @@
-"""Many detections a scan, an unknown number of targets: predict, gate, assign, update, start."""
+"""Multi-target tracking: predict, gate, assign, update, initiate."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -55,7 +55,7 @@ def track_scans(
     new: Callable[..., Any] | None = None,
     exclusive: bool = False,
 ) -> list[ManagedTrack]:
-    """Track all targets in a sequence of scans.
+    """Track an unknown number of targets in a sequence of scans.
 
     Parameters
     ----------

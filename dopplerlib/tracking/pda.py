@@ -1,4 +1,4 @@
-"""Probabilistic data association: use every detection, each by its chance of being the target."""
+"""Probabilistic data association (PDA)."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..estimation import gaussian
 
 @record
 class PdaUpdate:
-    """What a step of probabilistic data association returns.
+    """Result of an update by probabilistic data association.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ def pda_update(
     density: float,
     gate: float = 0.999,
 ) -> PdaUpdate:
-    """Update a state with several detections, of which at most one is of the target.
+    """Measurement update by probabilistic data association.
 
     Parameters
     ----------

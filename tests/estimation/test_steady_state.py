@@ -68,9 +68,9 @@ def test_lags_of_many_pushes_come_at_once():
 
 
 def test_what_does_not_settle_is_refused():
-    with pytest.raises(ValueError, match="F, H, Q must let the filter settle"):
+    with pytest.raises(ValueError, match="F, H, Q must be detectable and stabilizable"):
         steady_state_gain(F, np.zeros((2, 2)), [[0.0, 1.0]], [[1.0]])
-    with pytest.raises(ValueError, match="K must let errors die out"):
+    with pytest.raises(ValueError, match="K must give a stable filter"):
         steady_state_lag(F, H, [[0.0], [0.0]], [0.0, 1.0])
     with pytest.raises(ValueError, match="R must be positive definite"):
         steady_state_gain(F, np.eye(2), H, [[0.0]])

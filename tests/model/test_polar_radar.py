@@ -63,7 +63,7 @@ def test_one_scan_leaves_one_direction_of_the_state_open():
 
 @pytest.mark.parametrize("function", [polar_radar_h, polar_radar_jacobian])
 def test_a_target_on_the_radar_is_refused(function):
-    with pytest.raises(ValueError, match="x must keep clear of the radar"):
+    with pytest.raises(ValueError, match="x must not lie on the radar"):
         function([0.0, 1.0, 0.0, 1.0])
     with pytest.raises(ValueError, match="x must have shape"):
         function(np.zeros(6))

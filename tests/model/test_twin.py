@@ -45,7 +45,7 @@ def test_twins_are_batched():
     [
         ([0, 1, 0, 0, 0, 1], "x must lie off the plane"),
         ([1, 0, 0, 0, 1, 0], "x must lie off the plane"),
-        ([1, 0, 0, -0.1, 5, 0], "its twin is too far aside"),
+        ([1, 0, 0, -0.1, 5, 0], "got a position too far off its axis"),
         ([1, 0, 0], r"x must have shape \(..., 6\)"),
     ],
 )

@@ -85,7 +85,7 @@ def test_real_channels_are_not_taken_for_i_and_q(tmp_path, kind):
     for _ in range(4):
         x = REFUSED[kind](rng)
         with pytest.raises(
-            ValueError, match=r"^layout must be told for a.wav, .* sensor \d.*None$"
+            ValueError, match=r"^layout must be given for a.wav, .* sensor \d.*None$"
         ):
             read(tmp_path, x)
         np.testing.assert_array_equal(read(tmp_path, x, layout="iq").x, x)
@@ -134,7 +134,7 @@ def test_pairs_that_turn_are_not_taken_for_real_channels(tmp_path):
     x = scene(np.random.default_rng(6), 27)
     meta = real_sigmf(tmp_path, np.stack([x.real, x.imag], axis=1).reshape(12, -1))
     with pytest.raises(
-        ValueError, match=r"^layout must be told for a.sigmf-meta, .* turn together"
+        ValueError, match=r"^layout must be given for a.sigmf-meta, .* turn together"
     ):
         read_sigmf(meta)
     np.testing.assert_array_equal(read_sigmf(meta, layout="iq").x, x)

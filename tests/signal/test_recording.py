@@ -137,7 +137,7 @@ def test_a_cut_sigmf_file_is_refused(recording, tmp_path, cut):
     meta = write_sigmf(tmp_path / "a", recording)
     data = tmp_path / "a.sigmf-data"
     data.write_bytes(data.read_bytes()[:-cut])
-    with pytest.raises(ValueError, match=r"a.sigmf-meta is no sound SigMF recording: "):
+    with pytest.raises(ValueError, match=r"a.sigmf-meta is not a valid SigMF recording: "):
         read_sigmf(meta)
 
 
@@ -147,7 +147,7 @@ def test_a_changed_sigmf_file_is_refused(recording, tmp_path):
     content = bytearray(data.read_bytes())
     content[100] ^= 1
     data.write_bytes(content)
-    with pytest.raises(ValueError, match=r"is no sound SigMF recording: .*hash"):
+    with pytest.raises(ValueError, match=r"is not a valid SigMF recording: .*hash"):
         read_sigmf(meta)
 
 
@@ -182,7 +182,7 @@ WEIRD = {"name": "weird", "version": "1.0.0", "optional": False}
         (put("capture", "frequency", [24e9]), "frequency: .* is not of type 'number'"),
         (put("capture", "datetime", "yesterday"), "datetime: 'yesterday' does not match"),
         (put("capture", "datetime", 5), "datetime: 5 is not of type 'string'"),
-        (put("capture", "datetime", "2016-02-30T12:00:00Z"), "is no sound .*day"),
+        (put("capture", "datetime", "2016-02-30T12:00:00Z"), "is not a valid .*day"),
         (put("capture", "datetime", "0001-01-01T00:00:00+14:00"), "core:datetime .* years 1 to"),
         (put("capture", "datetime", "9999-12-31T23:59:59-14:00"), "core:datetime .* years 1 to"),
         (put("capture", "sample_start", 41), r"within 40 samples, .* \[41\], core:offset 0"),
@@ -211,9 +211,9 @@ WEIRD = {"name": "weird", "version": "1.0.0", "optional": False}
         (add(41), r"one after the other within 40 samples, .* \[0, 41\]"),
         (lambda c: c["global"].update({"dopplerlib:invalid": [[3, 0, 1]]}), "list of .sensor, fi"),
         (lambda c: c["global"].update({"dopplerlib:invalid": "all"}), "list of .sensor, fi"),
-        (lambda c: c["global"].update({"core:datatype": "cf63_le"}), "is no sound SigMF recording"),
-        (lambda c: c["global"].update({"core:sample_rate": "fast"}), "is no sound SigMF recording"),
-        (lambda c: c.pop("global"), "is no sound SigMF recording"),
+        (lambda c: c["global"].update({"core:datatype": "cf63_le"}), "is not a valid SigMF rec"),
+        (lambda c: c["global"].update({"core:sample_rate": "fast"}), "is not a valid SigMF rec"),
+        (lambda c: c.pop("global"), "is not a valid SigMF rec"),
     ],
 )  # fmt: skip
 def test_sigmf_that_leaves_something_open_is_refused(recording, tmp_path, change, message):
@@ -229,7 +229,7 @@ def test_sigmf_that_leaves_something_open_is_refused(recording, tmp_path, change
 def test_metadata_that_are_none_are_refused(recording, tmp_path, text):
     meta = write_sigmf(tmp_path / "a", recording)
     meta.write_bytes(text)
-    with pytest.raises(ValueError, match=r"^a.sigmf-meta is no sound SigMF recording: ."):
+    with pytest.raises(ValueError, match=r"^a.sigmf-meta is not a valid SigMF recording: ."):
         read_sigmf(meta)
 
 
@@ -253,10 +253,10 @@ def test_samples_without_a_hash_are_looked_at_all_the_same(recording, tmp_path, 
 def test_sigmf_that_is_no_json_or_has_no_data_is_refused(recording, tmp_path):
     meta = write_sigmf(tmp_path / "a", recording)
     (tmp_path / "a.sigmf-data").unlink()
-    with pytest.raises(ValueError, match=r"a.sigmf-meta is no sound SigMF recording"):
+    with pytest.raises(ValueError, match=r"a.sigmf-meta is not a valid SigMF recording"):
         read_sigmf(meta)
     meta.write_text("{")
-    with pytest.raises(ValueError, match=r"a.sigmf-meta is no sound SigMF recording"):
+    with pytest.raises(ValueError, match=r"a.sigmf-meta is not a valid SigMF recording"):
         read_sigmf(meta)
 
 
@@ -264,7 +264,7 @@ def test_sigmf_that_is_no_json_or_has_no_data_is_refused(recording, tmp_path):
 def test_a_cut_wav_file_is_refused(recording, tmp_path, cut):
     path = write_wav(tmp_path / "a.wav", recording)
     path.write_bytes(path.read_bytes()[:-cut])
-    with pytest.raises(ValueError, match=r"a.wav is no sound WAV file: "):
+    with pytest.raises(ValueError, match=r"a.wav is not a valid WAV file: "):
         read_wav(path, 24e9)
 
 
@@ -282,15 +282,15 @@ def header(place, kind, value):
 @pytest.mark.parametrize(
     "change, message",
     [
-        (lambda b: b"", "is no sound WAV file: "),
-        (lambda b: b[:12], "is no sound WAV file: "),
-        (lambda b: b[:44], "is no sound WAV file: "),
-        (lambda b: b"RIFFxxxxWAVE" + bytes(100), "is no sound WAV file: "),
-        (header(10, "<H", 0), "is no sound WAV file: "),
-        (header(10, "<H", 4), "is no sound WAV file: "),
-        (header(12, "<I", 0), "is no sound WAV file: it must have channels and a .*got 6 and 0 Hz"),
-        (header(8, "<H", 7), "is no sound WAV file: it must hold PCM .* got format 7 of 64 bits"),
-        (header(22, "<H", 32), "is no sound WAV file: its frames must take 6 x 4 bytes, got 48"),
+        (lambda b: b"", "is not a valid WAV file: "),
+        (lambda b: b[:12], "is not a valid WAV file: "),
+        (lambda b: b[:44], "is not a valid WAV file: "),
+        (lambda b: b"RIFFxxxxWAVE" + bytes(100), "is not a valid WAV file: "),
+        (header(10, "<H", 0), "is not a valid WAV file: "),
+        (header(10, "<H", 4), "is not a valid WAV file: "),
+        (header(12, "<I", 0), "is not a valid .*: it must have channels and a .*got 6 and 0 Hz"),
+        (header(8, "<H", 7), "is not a valid .*: it must hold PCM .* got format 7 of 64 bits"),
+        (header(22, "<H", 32), "is not a valid WAV file: its frames must take 6 x 4 bytes, got 48"),
     ],
 )  # fmt: skip
 def test_a_malformed_wav_file_is_refused(recording, tmp_path, change, message):
@@ -553,7 +553,7 @@ def test_an_archive_of_two_recordings_is_refused(recording, tmp_path):
         for path in sorted(tmp_path.glob("?.sigmf-*")):
             archive.add(path, f"two/{path.name}")
     with pytest.raises(
-        ValueError, match=r"two.sigmf is no sound .*: it must hold one rec.*, got 2"
+        ValueError, match=r"two.sigmf is not a valid .*: it must hold one rec.*, got 2"
     ):
         read_sigmf(tmp_path / "two.sigmf")
 
@@ -562,7 +562,7 @@ def test_an_archive_of_two_recordings_is_refused(recording, tmp_path):
 @pytest.mark.parametrize("end", ["", ".gz", ".xz", ".zip"])
 def test_an_archive_that_is_none_is_refused(tmp_path, content, end):
     (tmp_path / f"a.sigmf{end}").write_bytes(content)
-    with pytest.raises(ValueError, match=r"^a.sigmf\S* is no sound SigMF recording: ."):
+    with pytest.raises(ValueError, match=r"^a.sigmf\S* is not a valid SigMF recording: ."):
         read_sigmf(tmp_path / f"a.sigmf{end}")
 
 

@@ -282,8 +282,8 @@ def test_what_makes_no_sense_is_refused_by_name(x):
     [
         (1, "estimator must be a function, got 1"),
         (lambda x: x, r"estimator must take 3 argument\(s\), got a function with"),
-        (lambda x, fs, band: 1.0, r"what estimator returns must have shape \(4,\), got \(\)"),
-        (lambda x, fs, band: "text", "what estimator returns must be an array of real numbers"),
+        (lambda x, fs, band: 1.0, r"estimator\(x, fs, band\) must have shape \(4,\), got \(\)"),
+        (lambda x, fs, band: "text", r"estimator\(x, fs, band\) must be an array of real numbers"),
     ],
 )
 def test_what_does_not_estimate_frequencies_is_refused_by_name(estimator, message):

@@ -55,7 +55,7 @@ def test_a_cut_file_of_any_writer_is_refused(name, tmp_path):
     path = tmp_path / "a.wav"
     for cut in (0, 3, 11, 12, 30, at - 4, at, at + 16, (at + end) // 2, end - 16, end - 1):
         path.write_bytes(content[:cut])
-        with pytest.raises(ValueError, match=r"^a.wav is no sound WAV file: "):
+        with pytest.raises(ValueError, match=r"^a.wav is not a valid WAV file: "):
             read_wav(path, CARRIER)
     path.write_bytes(content[:end])  # what follows the samples matters to nobody
     np.testing.assert_array_equal(read_wav(path, CARRIER).x, expected())
@@ -81,7 +81,7 @@ def test_a_cut_flac_file_is_refused(name, tmp_path):
     path = tmp_path / "a.flac"
     for cut in (4, 20, 100, len(content) // 2, len(content) - 20, len(content) - 1):
         path.write_bytes(content[:cut])
-        with pytest.raises(ValueError, match=r"^a.flac is no sound FLAC file: "):
+        with pytest.raises(ValueError, match=r"^a.flac is not a valid FLAC file: "):
             read_wav(path, CARRIER)
 
 
@@ -111,7 +111,7 @@ def test_what_is_not_one_sound_file_is_refused(tmp_path, change, message):
     content = (HERE / "python.wav").read_bytes()
     body = change(content[12:36], content[36:])
     (tmp_path / "a.wav").write_bytes(b"RIFF" + struct.pack("<I", 4 + len(body)) + b"WAVE" + body)
-    with pytest.raises(ValueError, match=f"^a.wav is no sound WAV file: it.*{message}"):
+    with pytest.raises(ValueError, match=f"^a.wav is not a valid WAV file: it.*{message}"):
         read_wav(tmp_path / "a.wav", CARRIER)
 
 
@@ -176,6 +176,6 @@ def test_flac_that_does_not_tell_its_length_is_refused(tmp_path):
     content[22:26] = bytes(4)
     (tmp_path / "a.flac").write_bytes(content)
     with pytest.raises(
-        ValueError, match=r"^a.flac is no sound FLAC file: its header must tell the"
+        ValueError, match=r"^a.flac is not a valid FLAC file: its header must state the"
     ):
         read_wav(tmp_path / "a.flac", CARRIER)

@@ -1,0 +1,104 @@
+"""The field's words stand in titles, summary lines, captions and error messages.
+
+Each entry of `WORDS` is a form that reads foreign, or a coinage, and the word of the field. Words
+that the glossary introduces beside their standard names (twin, blind direction) may be used.
+"""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+LIBRARY = ROOT / "dopplerlib"
+PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "replication")
+
+WORDS = {
+    r"form of Joseph": "Joseph form",
+    r"\bshares? of\b": "fraction or proportion",
+    r"\bchances?\b": "probability",
+    r"(?<![Ss]tandard )(?<![Dd]ocumented )\bdeviations?\b": "standard deviation",
+    r"\bsupposed\b": "assumed",
+    r"\bright filter\b": "consistent filter",
+    r"\b(no|lag-one) memory\b": "autocorrelation, whiteness",
+    r"\bright angles\b": "orthogonal",
+    r"\bbends?\b": "curvature",
+    r"\bwhoever\b|\bnobody\b": "a subject",
+    r"\b(is|are|was|be) (told|said)\b|\btells?\b": "states, reports, reads",
+    r"\b(so|how) (well|good)\b": "accuracy",
+    r"\bhow (often|many|far|much|long)\b": "number, fraction, distance, length",
+    r"^What\b|\b[Ww]hat (a|an|the|is|are|was|were|it|they|of|comes|stands)\b": "a noun as subject",
+    r"\bnot to be (seen|known)\b|\bcannot see\b": "unobservable",
+    r"\bno sound\b": "not valid",
+    r"\bdie out\b|\bsettles?\b": "stable, converges",
+    r"\bworth\b": "effective sample size",
+    r"\bmoments?\b(?! of)": "time",
+    r"\bConfidenceInterval (a|states)\b": "estimate",
+}
+
+
+def found(text):
+    """Return the words of a text that have a better one, each with that."""
+    hits = ((re.search(pattern, text), better) for pattern, better in WORDS.items())
+    return [f"{hit[0]!r}: rather {better}" for hit, better in hits if hit]
+
+
+def summary_lines(tree):
+    """Yield the line and the first line of every docstring."""
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            doc = ast.get_docstring(node)
+            if doc:
+                yield getattr(node, "lineno", 1), doc.partition("\n")[0]
+
+
+def messages(tree):
+    """Yield the line and the constant text of every error that is raised."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
+            constants = (c.value for c in ast.walk(node.exc) if isinstance(c, ast.Constant))
+            text = " ".join(c for c in constants if isinstance(c, str))
+            yield node.lineno, text
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+@pytest.mark.parametrize("texts", [summary_lines, messages])
+def test_the_library_speaks_as_the_field_does(package, texts):
+    strange = [
+        f"{path.relative_to(ROOT).as_posix()}:{line}: {text!r} {words}"
+        for path in sorted((LIBRARY / package).rglob("*.py"))
+        for line, text in texts(ast.parse(path.read_text(encoding="utf-8")))
+        if (words := found(text))
+    ]
+    assert strange == [], "\n".join(strange)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Return the state after a measurement, in the form of Joseph.",
+        "What a Kalman filter believes.",
+        "Return how many independent values an average is worth.",
+        "Return the share of runs that are lost.",
+        "Fuse two estimates of which nobody knows the correlation.",
+        "Return the errors in units of their deviations.",
+        "a.wav is no sound WAV file",
+        "Return the covariance to which the filter settles.",
+    ],
+)
+def test_a_form_that_reads_foreign_is_found(text):
+    assert found(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Measurement update of the linear Kalman filter (Joseph form).",
+        "Fuse two estimates with unknown cross-correlation.",
+        "Return the twin of a state: the unobservable direction of a ring.",
+        "Standard deviation of each frequency in Hz.",
+    ],
+)
+def test_the_words_of_the_field_are_not(text):
+    assert found(text) == []
