@@ -123,7 +123,8 @@ def track_scans(
     if callable(R):
         m = max((np.shape(scan)[-1] for scan in scans if np.size(scan)), default=1)
     else:
-        m = _checks.matrix("R", R, (None, None)).shape[0]
+        R = _checks.matrix("R", R, (None, None))
+        m = len(R)
         R = _checks.covariance("R", R, m)
     F = _checks.matrix("F", F, (None, None))
     n = F.shape[0]
