@@ -92,7 +92,7 @@ def clouds(errors: dict[str, Array], covariances: dict[str, Array], names: Seque
             ax.add_patch(
                 Ellipse(
                     (0, 0), width, height, angle=angle, fill=False, color=TRUTH, lw=1.6,
-                    label="95 %, says the filter",
+                    label="95 % by its covariance",
                 )
             )  # fmt: skip
             ax.set_title(label)
@@ -227,6 +227,6 @@ def claims(time: Array, spread: Array, claimed: dict[str, Array]) -> Figure:
         styles = ((OURS, "--", "s"), (SENSOR, "-.", "^"))
         for (label, value), (color, ls, marker) in zip(claimed.items(), styles, strict=False):
             ax.plot(time, value, color=color, ls=ls, marker=marker, ms=4, label=label)
-        ax.set(xscale="log", yscale="log", xlabel="time (s)", ylabel="range (m)")
+        ax.set(xscale="log", yscale="log", xlabel="time (s)", ylabel="error of the range (m)")
         ax.legend(loc="lower left")
         return figure

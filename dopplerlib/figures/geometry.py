@@ -233,12 +233,18 @@ def sensitivities(time: Array, jacobian: Array, sigma_f: float) -> Figure:
         axes = figure.subplots(1, 2, sharey=True)
         names = (("x", "y", "z"), (r"v_x", r"v_y", r"v_z"))
         units = ("Hz per cm", "Hz per cm/s")
-        for ax, first, group, unit in zip(axes, (0, 3), names, units, strict=True):
+        parts = ("position", "velocity")
+        panels = zip(axes, parts, (0, 3), names, units, strict=True)
+        for ax, part, first, group, unit in panels:
             for i, (name, style) in enumerate(zip(group, styles, strict=True)):
                 ax.semilogy(time, per_cm[:, first + i], style, color=OURS, label=f"${name}$", lw=2)
             ax.axhline(sigma_f, color=BOUND, lw=1)
             ax.annotate(r"$\sigma_f$", (time[-1], sigma_f), (-8, 7), color=BOUND, **LABEL)
-            ax.set(xlabel="time (s)", ylabel=f"sensitivity ({unit})", title="all sensors together")
+            ax.set(
+                xlabel="time (s)",
+                ylabel=f"sensitivity ({unit})",
+                title=f"{part}, all sensors together",
+            )
             ax.legend()
             ax.margins(x=0)
         return figure

@@ -236,7 +236,7 @@ def tags(time: Array, shift: Array, windows: Array, center: Array, end: Array) -
         right.plot(middle, center, "o-", color=OURS, ms=4, label="center")
         right.plot(windows[:, 1], end, "s--", color=PINK, ms=4, label="end")
         right.set(xlabel="time (s)", ylabel="error (Hz)")
-        right.legend(title="tagged with the")
+        right.legend(title="time stamp at the")
         return figure
 
 
@@ -364,7 +364,7 @@ def best_window(
         looks = zip(errors.items(), laws.values(), (PINK, OURS), ("s", "o"), ("--", "-"),
                     strict=True)  # fmt: skip
         for (tag, error), (length, law, best), color, marker, ls in looks:
-            ax.plot(1e3 * length, law, color=color, ls=ls, label=f"tag at the {tag}, law")
+            ax.plot(1e3 * length, law, color=color, ls=ls, label=f"time stamp at the {tag}, law")
             _bars(ax, 1e3 * T, error, color=color, ls="", marker=marker, ms=4, label="measured")
             ax.plot(1e3 * best, np.interp(best, length, law), "*", color=color, ms=15, mec="white",
                     label="best window")  # fmt: skip

@@ -146,7 +146,7 @@ def bounds_by_change(
                         color=BOUND)  # fmt: skip
         ax.set(xlabel="size of the change (cm)", ylabel="bound on position error (m)")
         ax.margins(x=0)
-        ax.legend(loc="lower left", facecolor="white", frameon=True, framealpha=0.9)
+        ax.legend(loc="upper center")
         return figure
 
 

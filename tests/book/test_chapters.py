@@ -8,7 +8,7 @@ import pytest
 
 from tools.notebooks import chapters
 
-MOST_PRINTING = 250  # lines in all chapters together: what prints is code, and a word here or there
+MOST_PRINTING = 60  # lines in all chapters together: what prints is code, and a word here or there
 BOOK = {path.stem: nbformat.read(path, as_version=4).cells for path in chapters()}
 WITH_EXERCISES = [name for name in BOOK if any("## Exercises" in c.source for c in BOOK[name])]
 # Sections that had a heading of their own in each chapter.

@@ -118,15 +118,15 @@ def faulty_filters(truth, z):
     blind = np.linalg.svd(doppler_jacobian(s.x0, s.array)).Vh[-1]
     cases = {
         "nothing": (z, {}),
-        "noise believed 10 % too small": (z, {"sigma_f": 0.9 * s.sigma_f}),
-        "noise believed 10 % too large": (z, {"sigma_f": 1.1 * s.sigma_f}),
-        "noise has a memory, 0.3": (memory, {}),
+        "noise assumed 10 % too small": (z, {"sigma_f": 0.9 * s.sigma_f}),
+        "noise assumed 10 % too large": (z, {"sigma_f": 1.1 * s.sigma_f}),
+        "colored noise, 0.3": (memory, {}),
         "one sensor off by sigma_f / 4": (biased, {}),
         "10 samples late": (late, {}),
-        "pushes believed 3 times too small": (z, {"sigma_a": s.sigma_a / 3}),
-        "pushes believed 3 times too large": (z, {"sigma_a": 3 * s.sigma_a}),
-        "pushes believed common, Eq 17": (z, {"noise": "shared"}),
-        "start 5 deviations off, blind way": (z, {"start": 5 * np.sqrt(s.P0[0, 0]) * blind}),
+        "pushes assumed 3 times too small": (z, {"sigma_a": s.sigma_a / 3}),
+        "pushes assumed 3 times too large": (z, {"sigma_a": 3 * s.sigma_a}),
+        "pushes assumed shared, Eq 17": (z, {"noise": "shared"}),
+        "start 5 deviations off, blind direction": (z, {"start": 5 * np.sqrt(s.P0[0, 0]) * blind}),
     }
     for label, (measured, settings) in cases.items():
         sigma_a, kind = settings.get("sigma_a", s.sigma_a), settings.get("noise", "per_axis")

@@ -52,12 +52,12 @@ def test_a_right_filter_is_refused_as_often_as_promised(refused, name):
 
 
 def test_wrong_noise_shows_in_the_average_of_nis(refused):
-    for label in ("noise believed 10 % too small", "noise believed 10 % too large"):
+    for label in ("noise assumed 10 % too small", "noise assumed 10 % too large"):
         assert refused[label]["NIS average"].mean() > 0.95
 
 
 def test_noise_with_a_memory_shows_in_the_whiteness(refused):
-    assert refused["noise has a memory, 0.3"]["innovation whiteness"].mean() > 0.95
+    assert refused["colored noise, 0.3"]["innovation whiteness"].mean() > 0.95
 
 
 def test_a_biased_sensor_hides_from_the_innovations_and_shows_in_the_errors(refused):
@@ -67,7 +67,7 @@ def test_a_biased_sensor_hides_from_the_innovations_and_shows_in_the_errors(refu
 
 
 def test_a_start_wrong_along_the_blind_direction_hides_from_the_innovations(refused):
-    results = refused["start 5 deviations off, blind way"]
+    results = refused["start 5 deviations off, blind direction"]
     assert max(results[name].mean() for name in TESTS[:3]) < 0.2
     assert results["NEES average"].mean() > 0.2
 
