@@ -1,4 +1,4 @@
-"""One module per source document, assembling the library as that document does."""
+"""The systems of the source documents: one package a document, each with the same doors."""
 
 from .._lazy import attach
 
