@@ -78,8 +78,9 @@ def shaped(*shape, check=_checks.moderate):
     return partial(check, shape=shape)
 
 
-def _covariance(name, value, shape):
-    return _checks.covariance(name, _checks.moderate(name, value), shape[0])
+def covariances(name, value, shape):
+    """Return covariances of `shape`, singular ones too; a check for `shaped` and `exactly`."""
+    return _checks.covariance(name, _checks.moderate(name, value), shape[0], definite=False)
 
 
 def exactly(*shape, check=_checks.moderate):
@@ -95,10 +96,27 @@ def exactly(*shape, check=_checks.moderate):
     return of_shape
 
 
+def between(low, high):
+    """Return a check of one number from `low` to `high`."""
+
+    def one(name, value):
+        number = _checks.one_number(name, value)
+        if not low <= number <= high:
+            raise ValueError(f"{name} must be from {low} to {high}, got {number}")
+        return number
+
+    return one
+
+
+def up_to(most, least=1):
+    """Return a check of one whole number from `least` to `most`."""
+    return partial(_checks.count, most=most, least=least)
+
+
 # Numbers, all of them from 1e-60 to 1e60 in size if not zero: their products are finite.
 Count = Annotated[int, _checks.whole_number]  # 1, 2, ...
 Index = Annotated[int, partial(_checks.whole_number, least=0)]
-Runs = Annotated[int, partial(_checks.count, most=10**6)]
+Runs = Annotated[int, up_to(10**6)]
 Positive = Annotated[float, _checks.moderate_number]
 Real = Annotated[float, partial(_checks.one_number, check=_checks.moderate)]
 Probability = Annotated[float, _checks.probability]
@@ -106,7 +124,7 @@ Probability = Annotated[float, _checks.probability]
 Reals = Annotated[FloatArray, _checks.moderate]
 State = Annotated[FloatArray, exactly(6)]
 States = Annotated[FloatArray, shaped(6)]
-Covariance = Annotated[FloatArray, exactly(6, 6, check=_covariance)]  # of a state
+Covariance = Annotated[FloatArray, exactly(6, 6, check=covariances)]  # of a state
 Measurements = Annotated[FloatArray, exactly(None, None, None)]  # runs, times, sensors
 # Booleans, and any numbers, NaN too.
 Booleans = Annotated[BoolArray, _checks.booleans]

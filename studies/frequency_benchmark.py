@@ -6,20 +6,20 @@ same ones for all estimators of the library.
 
 import json
 
-from dopplerlib.systems.mittermaier2016 import race
+from dopplerlib.evaluation import frequency_benchmark as benchmark
 
 FILES = (".json",)
 PARAMETERS = {
-    "seed": race.RACE_SEED,
-    "windows": race.RACE_WINDOWS,
-    "snr_db": list(race.RACE_LEVELS),
+    "seed": benchmark.SEED,
+    "windows": benchmark.WINDOWS,
+    "snr_db": list(benchmark.LEVELS),
 }
 COLUMNS = ("outliers", "ratio", "low", "high")
 
 
 def items():
     """Return the levels."""
-    return race.RACE_LEVELS
+    return benchmark.LEVELS
 
 
 def rows(items):
@@ -28,12 +28,12 @@ def rows(items):
         yield level(snr_db)
 
 
-def level(snr_db, names=tuple(race.RACE)):
+def level(snr_db, names=tuple(benchmark.ESTIMATORS)):
     """Return what the file holds of one level: by name the outliers, the ratio and its interval."""
-    x, f = race.race_windows(snr_db)
+    x, f = benchmark.benchmark_windows(snr_db)
     result = {}
     for name in names:
-        ratio, outliers = race.race_cell(name, x, f, snr_db)
+        ratio, outliers = benchmark.benchmark_cell(name, x, f, snr_db)
         ends = (float(f"{v:.5g}") for v in (ratio.value, ratio.low, ratio.high))
         result[name] = [outliers, *ends]
     return result
@@ -44,7 +44,8 @@ def contents(rows):
     parts = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
     for k, column in enumerate(COLUMNS):
         lines = (
-            f'    "{name}": {json.dumps([found[name][k] for found in rows])}' for name in race.RACE
+            f'    "{name}": {json.dumps([found[name][k] for found in rows])}'
+            for name in benchmark.ESTIMATORS
         )
         parts.append(f'  "{column}": {{\n' + ",\n".join(lines) + "\n  }")
     return ["{\n" + ",\n".join(parts) + "\n}\n"]

@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from dopplerlib.systems.mittermaier2016 import SweepReading, figure4
+from dopplerlib.systems.mittermaier2016 import SweepReading, run_noise_sweep
 
 FILES = (".csv",)
 PARAMETERS = {"seed": 4, **asdict(SweepReading())}
@@ -22,7 +22,7 @@ def items():
 def rows(items):
     """Yield the columns of the table."""
     for _ in items:
-        result = figure4(rng=np.random.default_rng(PARAMETERS["seed"]), progress=True)
+        result = run_noise_sweep(rng=np.random.default_rng(PARAMETERS["seed"]), progress=True)
         yield {name: value.tolist() for name, value in vars(result).items()}
 
 

@@ -10,11 +10,11 @@ from dataclasses import asdict
 import numpy as np
 
 from dopplerlib.systems.mittermaier2016 import (
-    figure4,
-    figure4_score,
-    published_figure4,
+    reported,
+    run_noise_sweep,
     scored_levels,
     sweep_readings,
+    sweep_score,
 )
 
 FILES = (".json",)
@@ -34,14 +34,14 @@ def rows(items):
 
 def score(reading, seed):
     """Return the fields of a reading, its score, and the interval of the score."""
-    result = figure4(
+    result = run_noise_sweep(
         scored_levels(),
         PARAMETERS["draws"],
         rng=np.random.default_rng(seed),
         reading=reading,
         bound=False,
     )
-    values = figure4_score(result, published_figure4(), rng=np.random.default_rng(seed))
+    values = sweep_score(result, reported().figure4, rng=np.random.default_rng(seed))
     rounded = (round(value, 1) for value in values)
     return asdict(reading) | dict(zip(("score", "low", "high"), rounded, strict=True))
 

@@ -6,10 +6,11 @@ A second. Bit for bit the same everywhere: the samples are rounded to 16 bits.
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from dopplerlib.systems.mittermaier2016 import FAULTS, SIMULATED, write_simulated_iq
+from dopplerlib.chain.simulation import MODULE_FAULTS
+from dopplerlib.systems.mittermaier2016 import SIMULATED, write_simulated_iq
 
 FILES = (".sigmf-meta", ".sigmf-data", ".truth.csv")
-PARAMETERS = SIMULATED | FAULTS
+PARAMETERS = SIMULATED | MODULE_FAULTS
 
 
 def items():

@@ -110,7 +110,7 @@ def test_a_recording_says_that_it_is_simulated_and_has_its_samples(path):
 
 @pytest.mark.parametrize("file", ["fig6_nis.csv", "fig6_errors.csv"])
 def test_a_curve_has_every_sample_once_and_in_order(file):
-    count = json.loads((PAPER / "table2.json").read_text())["derived_checks"]["nis_count"]
+    count = tomllib.loads((PAPER / "table2.toml").read_text())["derived_checks"]["nis_count"]
     assert column(PAPER / file, "sample") == list(range(1, count + 1))
 
 
@@ -147,5 +147,5 @@ def test_a_flag_says_whether_an_error_lies_above_the_axis_and_whether_it_is_know
 
 def test_the_final_errors_of_the_curves_are_those_of_the_checks():
     last = rows(PAPER / "fig6_errors.csv")[-1]
-    checks = json.loads((PAPER / "table2.json").read_text())["derived_checks"]
+    checks = tomllib.loads((PAPER / "table2.toml").read_text())["derived_checks"]
     assert [float(last[f"e{axis}_cm"]) for axis in "xyz"] == checks["final_abs_error_cm_digitized"]

@@ -1,3 +1,5 @@
 # Made by python -m tools.stubs; do not edit.
 from . import baseband as baseband
+from . import phase_fit as phase_fit
+from . import simulation as simulation
 from . import track as track

@@ -4,8 +4,10 @@ from . import averages as averages
 from . import bootstrap as bootstrap
 from . import bounds as bounds
 from . import checklist as checklist
+from . import colored_noise as colored_noise
 from . import consistency as consistency
 from . import directions as directions
+from . import frequency_benchmark as frequency_benchmark
 from . import intervals as intervals
 from . import observability as observability
 from . import power as power

@@ -4,19 +4,19 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._hints import Array, checked
-from ..systems.mittermaier2016 import Figure4, PublishedFigure4
+from ..systems.mittermaier2016 import NoiseSweep, PublishedFigure4
 from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, styled
 
 _PARTS = (("position", "m"), ("velocity", "m/s"))
 
 
 @checked
-def errors_by_noise(ours: Figure4, published: PublishedFigure4 | None = None) -> Figure:
+def errors_by_noise(ours: NoiseSweep, published: PublishedFigure4 | None = None) -> Figure:
     """Draw mean errors against the variance of the noise, as in Fig 4 but on two log axes.
 
     Parameters
     ----------
-    ours : Figure4
+    ours : NoiseSweep
         Drawn as a band from the least to the largest sequence, and their mean.
     published : PublishedFigure4, optional
         Drawn as dots.

@@ -5,19 +5,21 @@ from matplotlib.figure import Figure
 
 from .._hints import checked
 from ..model.radar_array import RadarArray
-from ..systems.mittermaier2016 import Figure6, PublishedFigure6
+from ..systems.mittermaier2016 import ExampleRuns, PublishedFigure6
 from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, styled
 
 _AXES = ("x", "y", "z")
 
 
 @checked
-def scene(result: Figure6, published: PublishedFigure6, array: RadarArray, run: int = 0) -> Figure:
+def scene(
+    result: ExampleRuns, published: PublishedFigure6, array: RadarArray, run: int = 0
+) -> Figure:
     """Draw the paper's 3-D scene: sensors, true path, estimates of one run, published estimates.
 
     Parameters
     ----------
-    result : Figure6
+    result : ExampleRuns
         Our runs.
     published : PublishedFigure6
         The digitized figure.
@@ -50,12 +52,12 @@ def scene(result: Figure6, published: PublishedFigure6, array: RadarArray, run: 
 
 
 @checked
-def errors(result: Figure6, published: PublishedFigure6, run: int = 0) -> Figure:
+def errors(result: ExampleRuns, published: PublishedFigure6, run: int = 0) -> Figure:
     """Draw the absolute position errors of one run, and the published ones, axis by axis.
 
     Parameters
     ----------
-    result : Figure6
+    result : ExampleRuns
         Our runs.
     published : PublishedFigure6
         The digitized figure.
@@ -78,12 +80,12 @@ def errors(result: Figure6, published: PublishedFigure6, run: int = 0) -> Figure
 
 
 @checked
-def error_bands(result: Figure6, published: PublishedFigure6) -> Figure:
+def error_bands(result: ExampleRuns, published: PublishedFigure6) -> Figure:
     """Draw percentile bands of the absolute errors over all runs, and the published curves.
 
     Parameters
     ----------
-    result : Figure6
+    result : ExampleRuns
         Our runs.
     published : PublishedFigure6
         The digitized figure.
@@ -117,13 +119,13 @@ def error_bands(result: Figure6, published: PublishedFigure6) -> Figure:
 
 @checked
 def nis(
-    result: Figure6, published: PublishedFigure6, interval: tuple[float, ...], run: int = 0
+    result: ExampleRuns, published: PublishedFigure6, interval: tuple[float, ...], run: int = 0
 ) -> Figure:
     """Draw NIS of one run above the published NIS, with the samples that were not used.
 
     Parameters
     ----------
-    result : Figure6
+    result : ExampleRuns
         Our runs.
     published : PublishedFigure6
         The digitized figure.
@@ -156,13 +158,15 @@ def nis(
 
 @checked
 def nis_averages(
-    results: dict[str, Figure6], published_average: dict[str, float], interval: tuple[float, ...]
+    results: dict[str, ExampleRuns],
+    published_average: dict[str, float],
+    interval: tuple[float, ...],
 ) -> Figure:
     """Draw the distribution over runs of the time average of NIS, for several filters.
 
     Parameters
     ----------
-    results : dict of str to Figure6
+    results : dict of str to ExampleRuns
         Runs of each filter, by label.
     published_average : dict of str to float
         Published averages, by label.
@@ -191,12 +195,12 @@ def nis_averages(
 
 
 @checked
-def skipped_counts(result: Figure6, published: PublishedFigure6) -> Figure:
+def skipped_counts(result: ExampleRuns, published: PublishedFigure6) -> Figure:
     """Draw the number of samples that each run did not use: too good against too bad.
 
     Parameters
     ----------
-    result : Figure6
+    result : ExampleRuns
         Runs with the two-sided gate.
     published : PublishedFigure6
         The digitized figure.

@@ -8,8 +8,8 @@ from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 from .._hints import Array, checked
 from .._typing import ComplexArray
+from ..evaluation.frequency_benchmark import FrequencyBenchmark
 from ..evaluation.intervals import ConfidenceInterval
-from ..systems.mittermaier2016 import Race
 from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, styled
 
 _STYLES = (
@@ -268,13 +268,15 @@ def outliers(estimates: dict[str, Array], truth: float) -> Figure:
 
 
 @checked
-def threshold(race: Race, names: Sequence[str], predicted: Array, law: Array) -> Figure:
+def threshold(
+    benchmark: FrequencyBenchmark, names: Sequence[str], predicted: Array, law: Array
+) -> Figure:
     """Draw errors and outliers against the signal-to-noise ratio, with bound and law.
 
     Parameters
     ----------
-    race : Race
-        From `saved_race` of ``systems.mittermaier2016``.
+    benchmark : FrequencyBenchmark
+        From `saved_benchmark`.
     names : sequence of str
         Estimators that are drawn.
     predicted : ndarray, shape (L,)
@@ -288,19 +290,21 @@ def threshold(race: Race, names: Sequence[str], predicted: Array, law: Array) ->
     """
     with styled(7.0, 6.2) as figure:
         top, low = figure.subplots(2, 1, sharex=True, height_ratios=(1.5, 1))
-        top.plot(race.snr_db, race.bound, color=BOUND, lw=5, alpha=0.35, label="bound")
-        top.plot(race.snr_db, predicted, color=BOUND, lw=1.2, ls=":", label="bound with outliers")
-        low.plot(race.snr_db, law, color=BOUND, lw=1.2, ls=":")
+        top.plot(benchmark.snr_db, benchmark.bound, color=BOUND, lw=5, alpha=0.35, label="bound")
+        top.plot(
+            benchmark.snr_db, predicted, color=BOUND, lw=1.2, ls=":", label="bound with outliers"
+        )
+        low.plot(benchmark.snr_db, law, color=BOUND, lw=1.2, ls=":")
         for name, (color, ls, marker) in zip(names, _STYLES, strict=False):
             look = {"color": color, "ls": ls, "marker": marker, "ms": 3.5, "lw": 1.2}
-            _bars(top, race.snr_db, race.ratio[name], race.bound, label=name, **look)
-            seen = [k for k, e in enumerate(race.outliers[name]) if e.value > 0]
-            _bars(low, race.snr_db[seen], [race.outliers[name][k] for k in seen], **look)
+            _bars(top, benchmark.snr_db, benchmark.ratio[name], benchmark.bound, label=name, **look)
+            seen = [k for k, e in enumerate(benchmark.outliers[name]) if e.value > 0]
+            _bars(low, benchmark.snr_db[seen], [benchmark.outliers[name][k] for k in seen], **look)
         low.axhline(0.01, color=TRUTH, lw=0.8)
-        low.text(race.snr_db[-1], 0.012, "1 %", color=TRUTH, ha="right")
+        low.text(benchmark.snr_db[-1], 0.012, "1 %", color=TRUTH, ha="right")
         top.set(yscale="log", ylabel="RMS error (Hz)")
         low.set(
-            yscale="log", ylim=(0.5 / race.windows, 1.5), ylabel="fraction of outliers",
+            yscale="log", ylim=(0.5 / benchmark.windows, 1.5), ylabel="fraction of outliers",
             xlabel="SNR of a sample (dB)",
         )  # fmt: skip
         top.legend(ncols=2)

@@ -6,19 +6,20 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._hints import Array, Booleans, checked
-from ..systems.sombatsatien import PostMortem, ReportedRun
+from ..replication.published import Published
+from ..systems.sombatsatien import PostMortem
 from .style import BOUND, OURS, PUBLISHED, TRUTH, VARIANTS, styled
 
 
 @checked
-def symptoms(result: PostMortem, told: ReportedRun, run: int = 0) -> Figure:
+def symptoms(result: PostMortem, told: Published, run: int = 0) -> Figure:
     """Draw distance, speed and position error of many runs beside the reported end values.
 
     Parameters
     ----------
     result : PostMortem
         Runs of the report's system.
-    told : ReportedRun
+    told : Published
         Results of the report.
     run : int
         Which run to draw on its own.

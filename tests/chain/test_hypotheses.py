@@ -10,9 +10,10 @@ from scipy.stats import multivariate_normal
 
 from dopplerlib import doppler_jacobian, doppler_shift, ekf
 from dopplerlib.chain._hypotheses import filters, parts, start_covariance
+from dopplerlib.chain.simulation import simulate_baseband
 from dopplerlib.systems import mittermaier2016 as paper
 
-S = paper.scenario()
+S = paper.reported().scenario
 T, USED, APART = 0.0125, 21, 2
 ALL = np.ones(6, dtype=bool)
 
@@ -23,7 +24,9 @@ def moved(state, time):
 
 @pytest.fixture(scope="module")
 def found():
-    iq = paper.received(4, rng=np.random.default_rng(91), faults=False)
+    iq = simulate_baseband(
+        paper.reported().scenario, 4, rng=np.random.default_rng(91), faults=False
+    )
     return paper.track_iq(iq, hop=T, start=0.2, remove_dc=False, balance=False)
 
 
@@ -102,7 +105,9 @@ def test_the_state_of_a_start_belongs_to_its_last_sample(used):
     The blur in a window of 25 ms moves a shift by 0.01 Hz, and a position by a few millimeters;
     one window earlier the target was 9.5 mm away.
     """
-    iq = paper.received(1, rng=np.random.default_rng(92), snr_db=None, faults=False)
+    iq = simulate_baseband(
+        paper.reported().scenario, 1, rng=np.random.default_rng(92), snr_db=None, faults=False
+    )
     first = paper.track_iq(iq, hop=T, remove_dc=False, balance=False).available_at[0]
     start = first + (used - 1) * T + 24 * T
     f = paper.track_iq(iq, hop=T, start=start, remove_dc=False, balance=False)

@@ -4,8 +4,8 @@ Where a test is about random numbers, it holds for all but the stated share of s
 written down once and are not chosen.
 """
 
-import json
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -213,7 +213,7 @@ def test_the_interval_for_one_degree_of_freedom_is_that_of_a_squared_normal():
 
 
 def test_the_interval_is_the_one_that_the_paper_prints():
-    printed = json.loads((DATA / "table2.json").read_text(encoding="utf-8"))["quoted"]
+    printed = tomllib.loads((DATA / "table2.toml").read_text(encoding="utf-8"))["quoted"]
     assert [round(bound, 3) for bound in chi2_interval(6)] == printed["nis_bounds_95"]
 
 

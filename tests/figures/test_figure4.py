@@ -5,11 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from dopplerlib.figures import figure4 as draw
-from dopplerlib.systems.mittermaier2016 import Figure4, PublishedFigure4, noise_levels
+from dopplerlib.systems.mittermaier2016 import NoiseSweep, PublishedFigure4, noise_levels
 
 NOISE_LEVELS = noise_levels()
 ERROR = 0.2 * np.sqrt(NOISE_LEVELS)[:, None] * np.linspace(0.8, 1.2, 5)
-OURS = Figure4(NOISE_LEVELS, ERROR, 2 * ERROR, ERROR / 2, ERROR, 0.9 * ERROR, 1.8 * ERROR)
+OURS = NoiseSweep(NOISE_LEVELS, ERROR, 2 * ERROR, ERROR / 2, ERROR, 0.9 * ERROR, 1.8 * ERROR)
 DOTS = PublishedFigure4(NOISE_LEVELS, 1.1 * ERROR, 2.1 * ERROR)
 
 

@@ -18,22 +18,22 @@ INTERVAL = (1.2, 14.4)
 
 @pytest.fixture(scope="module")
 def published():
-    return paper.published_figure6()
+    return paper.reported().figure6
 
 
 @pytest.fixture(scope="module")
 def result():
-    return paper.figure6(RUNS, rng=np.random.default_rng(31), keep=())
+    return paper.run_example(RUNS, rng=np.random.default_rng(31), keep=())
 
 
 @pytest.fixture(scope="module")
 def gated():
-    return paper.figure6(RUNS, rng=np.random.default_rng(31), gate="two-sided", keep=())
+    return paper.run_example(RUNS, rng=np.random.default_rng(31), gate="two-sided", keep=())
 
 
 @pytest.fixture(scope="module")
 def array():
-    return paper.scenario().array
+    return paper.reported().scenario.array
 
 
 @pytest.fixture(scope="module")

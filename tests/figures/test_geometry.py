@@ -10,7 +10,7 @@ from dopplerlib import RadarArray, doppler_jacobian, doppler_shift
 from dopplerlib.figures import geometry as draw
 from dopplerlib.systems import mittermaier2016 as paper
 
-SCENARIO = paper.scenario()
+SCENARIO = paper.reported().scenario
 RING, X0 = SCENARIO.array, SCENARIO.x0
 PAIR = RadarArray.linear(2, 0.4)
 FLAT = np.array([0.6, 0.2, 0, -0.5, -0.6, 0])

@@ -11,9 +11,9 @@ from dopplerlib.systems import mittermaier2016 as paper
 
 
 def test_the_first_picture_draws_every_run_from_the_start_to_its_end():
-    scenario = paper.scenario()
-    result = paper.figure6(3, rng=np.random.default_rng(5), keep=())
-    start, z = paper.table2().x_ml, doppler_shift(scenario.truth, scenario.array)
+    scenario = paper.reported().scenario
+    result = paper.run_example(3, rng=np.random.default_rng(5), keep=())
+    start, z = paper.reported().table2.x_ml, doppler_shift(scenario.truth, scenario.array)
     scene, curves, errors = hero(scenario, z, result.track.x, start, -50, 10).axes
     fan = next(c for c in scene.collections if isinstance(c, LineCollection)).get_segments()
     expected = [[start[:3], run[-1, :3]] for run in result.track.x]

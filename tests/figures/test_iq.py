@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from dopplerlib.evaluation.frequency_benchmark import FrequencyBenchmark
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import iq
-from dopplerlib.systems.mittermaier2016 import Race
 from tests.drawn import lines
 
 RATIO = [ConfidenceInterval(2.0, 1.0, 3.0)] * 3
@@ -13,7 +13,7 @@ SHARE = [
     ConfidenceInterval(0.1, 0.01, 0.2),
     ConfidenceInterval(0.0, 0.0, 0.1),
 ]
-RACE = Race(
+RACE = FrequencyBenchmark(
     np.arange(3), np.array([10.0, 2.0, 1.0]), 100, dict.fromkeys("abcdefgh", RATIO),
     dict.fromkeys("abcdefgh", SHARE),
 )  # fmt: skip

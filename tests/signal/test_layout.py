@@ -5,8 +5,9 @@ import pytest
 from scipy.io import wavfile
 from scipy.signal import hilbert
 
+from dopplerlib.chain.simulation import simulate_baseband
 from dopplerlib.signal.recording import Recording, read_sigmf, read_wav, write_sigmf, write_wav
-from dopplerlib.systems.mittermaier2016.received_iq import received
+from dopplerlib.systems import mittermaier2016
 
 FS, CARRIER = 2000.0, 24e9
 
@@ -28,7 +29,9 @@ def tones(rng, snr_db, sensors=6, gain=1.0, phase=0.0, dc=0.0):
 
 
 def scene(rng, snr_db):
-    return received(1, rng=rng, fs=FS, snr_db=snr_db, factor=1).x[0]
+    return simulate_baseband(
+        mittermaier2016.reported().scenario, 1, rng=rng, fs=FS, snr_db=snr_db, factor=1
+    ).x[0]
 
 
 def real_channels(x):

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from dopplerlib import RadarArray, ekf, sliding_doppler
+from dopplerlib.evaluation.frequency_benchmark import ESTIMATORS
 from dopplerlib.signal import frequency, interpolation, phase
 from dopplerlib.signal.synthesis import tone
-from dopplerlib.systems.mittermaier2016.race import RACE
 
 FS, N = 1000.0, 64
 
@@ -29,14 +29,14 @@ PLAIN = {
     for name, value in vars(module).items()
     if takes_samples(value) and not name.startswith("_") and value.__module__ == module.__name__
 }
-ALL = PLAIN | RACE
+ALL = PLAIN | ESTIMATORS
 every = pytest.mark.parametrize("estimator", ALL.values(), ids=ALL)
 
 
 def test_all_of_them_are_found():
     assert len(PLAIN) == 12
-    assert len(RACE) == 16
-    assert {getattr(e, "func", e) for e in RACE.values()} == set(PLAIN.values())
+    assert len(ESTIMATORS) == 16
+    assert {getattr(e, "func", e) for e in ESTIMATORS.values()} == set(PLAIN.values())
 
 
 @every

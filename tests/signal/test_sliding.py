@@ -162,7 +162,7 @@ def test_five_good_modules_and_a_dead_one_still_find_and_track_the_target(consta
 
     The filter's errors are not white in truth, but its windows lie side by side.
     """
-    scenario = mittermaier2016.scenario()
+    scenario = mittermaier2016.reported().scenario
     t = np.arange(5000) / FS
     path = scenario.x0[:3] + t[:, None] * scenario.x0[3:]
     x = iq_from_geometry(path, scenario.array, 20.0, rng=np.random.default_rng(10))
@@ -218,7 +218,7 @@ def test_the_frequency_of_a_chirp_is_that_at_the_center():
 
 def test_the_doppler_shifts_of_table_2_come_back_from_its_iq():
     """Without noise: what is left is the curvature of the shift, f'' T^2 / 40, 0.05 Hz at most."""
-    scenario = mittermaier2016.scenario()
+    scenario = mittermaier2016.reported().scenario
     t = np.arange(10000) / FS
     path = scenario.x0[:3] + t[:, None] * scenario.x0[3:]
     x = iq_from_geometry(path, scenario.array, None, rng=np.random.default_rng(4))

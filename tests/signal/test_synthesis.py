@@ -139,7 +139,7 @@ def test_a_whole_batch_of_paths_is_taken():
 
 
 def test_the_track_of_table_2_can_be_heard():
-    scenario = mittermaier2016.scenario()
+    scenario = mittermaier2016.reported().scenario
     x = iq_from_geometry(scenario.truth[:, :3], scenario.array, None, rng=rng())
     step = np.angle(x[:, 1:] * x[:, :-1].conj()) / (2 * np.pi * scenario.T)
     expected = doppler_shift(scenario.truth, scenario.array).T

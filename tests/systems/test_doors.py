@@ -7,7 +7,9 @@ from importlib import import_module
 
 import pytest
 
-ROOMS = ("asheim2015", "macaveiu2013", "sombatsatien")
+from dopplerlib.replication.published import Published
+
+ROOMS = ("asheim2015", "macaveiu2013", "mittermaier2016", "sombatsatien")
 
 
 def modules(room):
@@ -51,8 +53,11 @@ def test_what_the_document_states_is_one_record_whose_parts_have_a_source(room):
     reported = import_module(f"dopplerlib.systems.{room}.published").reported
     found = reported()
     assert reported() is found and is_dataclass(found)
-    named = {field.name for field in fields(found)} - {"sources"}
-    assert found.sources.keys() == named and all(found.sources.values())
+    parts = {field.name: getattr(found, field.name) for field in fields(found)}
+    # A part that is a `Published` says itself where it stands; it may be told here as well.
+    others = {name for name, part in parts.items() if not isinstance(part, Published)}
+    assert others - {"sources"} <= found.sources.keys() <= parts.keys()
+    assert all(found.sources.values())
 
 
 def test_the_evidence_is_one_function_of_a_generator(room):

@@ -39,8 +39,8 @@ def part_calls(dl, np):
         "replication": lambda: judged(dl, rng),
         "systems, asheim2015": lambda: s.asheim2015.noise_std([1.0, 2.0]),
         "systems, macaveiu2013": lambda: s.macaveiu2013.saved_detections()[7]["target"],
-        "systems, mittermaier2016": lambda: s.mittermaier2016.published_figure6().nis,
-        "systems, scenario": lambda: s.mittermaier2016.scenario().truth,
+        "systems, mittermaier2016": lambda: s.mittermaier2016.reported().figure6.nis,
+        "systems, scenario": lambda: s.mittermaier2016.reported().scenario.truth,
         "systems, sombatsatien": lambda: s.sombatsatien.reported_record(),
         "systems, valarmathi": lambda: s.valarmathi.saved_study().snrs_db,
         "systems, compiled": lambda: s.valarmathi._pair_kernel.choose(
@@ -84,7 +84,7 @@ def figure_calls(dl, np):
         "style": lambda: f.style.STYLE.read_text(encoding="utf-8"),
         "demonstration": lambda: f.geometry.demonstration("", line, x0),
         "figure6": lambda: f.figure6.errors(
-            paper.figure6(1, rng=rng, keep=()), paper.published_figure6()
+            paper.run_example(1, rng=rng, keep=()), paper.reported().figure6
         ),
     }
 

@@ -1,14 +1,30 @@
 """How well the position can be known: from windows side by side, and from the samples."""
 
+from typing import Annotated
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Positive, between, checked, covariances, exactly, up_to
+from ..._typing import FloatArray
 from ...evaluation.bounds import crlb
 from ...signal.laws import crlb_frequency_std
-from .published import scenario
+from .published import reported
+
+Time = Annotated[float, between(0, 1.1)]  # s: then the target is behind the ring
+Echo = Annotated[float, between(1e-9, 1e15)]  # Hz
+Rate = Annotated[float, between(1, 1e7)]  # Hz
 
 
-def position_bound(time, window, cn0, *, first=0.0, samples_per_second=100e3):
+@checked
+def position_bound(
+    time: Time,
+    window: Annotated[float, between(1e-6, 1)],
+    cn0: Echo,
+    *,
+    first: Time = 0.0,
+    samples_per_second: Rate = 100e3,
+) -> FloatArray:
     """Return how well the position at a time can be known from windows side by side.
 
     Parameters
@@ -37,17 +53,21 @@ def position_bound(time, window, cn0, *, first=0.0, samples_per_second=100e3):
     Raises
     ------
     ValueError
-        If a number is not positive where it has to be, or no window fits.
+        If a number is out of its range (times 0 to 1.1 s, windows 1e-6 to 1 s, echoes 1e-9 to
+        1e15 Hz, rates 1 to 1e7 Hz), or no window fits.
 
     Notes
     -----
     `crlb` of the moving likelihood with the deviations of `crlb_frequency_std`. It sees the middles
     of the windows only, no chirp inside them.
+
+    Examples
+    --------
+    >>> bool(position_bound(0.5, 0.05, 1e6)[0, 0] > position_bound_iq(0.5, 1e6)[0, 0])
+    True
     """
-    s = scenario()
-    window = _checks.positive_number("window", window)
-    cn0 = _checks.positive_number("cn0", cn0)
-    K = int((_checks.one_number("time", time) - first) / window + 1e-9)
+    s = reported().scenario
+    K = int((time - first) / window + 1e-9)
     if K < 1:
         raise ValueError(f"time must leave room for a window of {window} s, got {time}")
     n = max(2, round(window * samples_per_second))
@@ -59,7 +79,10 @@ def position_bound(time, window, cn0, *, first=0.0, samples_per_second=100e3):
     return (F @ P @ F.T)[:3, :3]
 
 
-def position_bound_iq(time, cn0, *, first=0.0, samples_per_second=2000.0):
+@checked
+def position_bound_iq(
+    time: Time, cn0: Echo, *, first: Time = 0.0, samples_per_second: Rate = 2000.0
+) -> FloatArray:
     """Return how well the position at a time can be known from the IQ samples up to it.
 
     Parameters
@@ -82,7 +105,7 @@ def position_bound_iq(time, cn0, *, first=0.0, samples_per_second=2000.0):
     Raises
     ------
     ValueError
-        If a number is not positive where it has to be, or there are less than three samples.
+        If a number is out of its range, see `position_bound`, or there are less than three samples.
 
     Notes
     -----
@@ -90,11 +113,14 @@ def position_bound_iq(time, cn0, *, first=0.0, samples_per_second=2000.0):
     ``2 snr dphi dphi^T`` to the information on what phi depends on. The phase of sensor n is an
     unknown plus -4 pi r_n / wavelength. The unknown takes the mean of the slopes of r_n away; the
     amplitude takes nothing, as it is in quadrature.
+
+    Examples
+    --------
+    >>> position_bound_iq(0.5, 1e6).shape
+    (3, 3)
     """
-    s = scenario()
-    cn0 = _checks.positive_number("cn0", cn0)
-    fs = _checks.positive_number("samples_per_second", samples_per_second)
-    length = _checks.one_number("time", time) - _checks.one_number("first", first)
+    s = reported().scenario
+    fs, length = samples_per_second, time - first
     if not length * fs >= 3:
         raise ValueError(f"time must leave room for three samples, got {time}")
     t = first + (np.arange(round(length * fs)) + 0.5) / fs
@@ -110,7 +136,8 @@ def position_bound_iq(time, cn0, *, first=0.0, samples_per_second=2000.0):
     return (np.linalg.inv(information) / np.outer(scale, scale))[:3, :3]
 
 
-def record_for(error, cn0):
+@checked
+def record_length(error: Positive, cn0: Echo) -> float:
     """Return how long a record has to be until the position can be known so well.
 
     Parameters
@@ -130,14 +157,18 @@ def record_for(error, cn0):
     ------
     ValueError
         If a number is not positive.
+
+    Examples
+    --------
+    >>> round(record_length(0.05, 1e6), 2)
+    0.07
     """
-    error, cn0 = _checks.positive_number("error", error), _checks.positive_number("cn0", cn0)
 
     def enough(length):
         P = position_bound_iq(length, cn0, samples_per_second=400 / length)
         return np.sqrt(np.trace(P)) <= error
 
-    low, high = 1e-3, float(scenario().time[-1])
+    low, high = 1e-3, float(reported().scenario.time[-1])
     if not enough(high):
         return np.inf
     while high > low * (1 + 1e-6):
@@ -146,7 +177,13 @@ def record_for(error, cn0):
     return float(high)
 
 
-def median_error(P, *, rng, draws=20_000):
+@checked
+def median_error(
+    P: Annotated[FloatArray, exactly(3, 3, check=covariances)],
+    *,
+    rng: np.random.Generator,
+    draws: Annotated[int, up_to(10**7)] = 20_000,
+) -> float:
     """Return the median length of a normal error.
 
     Parameters
@@ -167,8 +204,12 @@ def median_error(P, *, rng, draws=20_000):
     ------
     ValueError
         If `P` is no covariance, `draws` is not positive, or `rng` is not a generator.
+
+    Examples
+    --------
+    >>> round(median_error(np.eye(3), rng=np.random.default_rng(1)), 1)
+    1.5
     """
-    _checks.generator("rng", rng)
-    P = _checks.covariance("P", P, 3)
-    normal = rng.standard_normal((_checks.whole_number("draws", draws), 3))
+    _checks.covariance("P", P, 3)
+    normal = rng.standard_normal((draws, 3))
     return float(np.median(np.linalg.norm(normal @ np.linalg.cholesky(P).T, axis=-1)))

@@ -2,29 +2,33 @@
 
 from dataclasses import replace
 from functools import cache
+from typing import Any, Literal
 
 import numpy as np
 
 from ... import _checks
+from ..._hints import Positive, checked
 from ...chain import track
 from ...chain.baseband import Baseband
-from .published import scenario, signal_chain
+from ...chain.track import IqTrack
+from .published import reported
 from .start import start_box
 
 _SEARCHES = {"quarters": "parts", "room": "whole"}
 
 
+@checked
 def track_iq(
-    iq,
+    iq: Baseband,
     *,
-    window=0.025,
-    timestamp="center",
-    subtract_delay=True,
-    start=0.3,
-    sigma_a=None,
-    search="quarters",
-    **settings,
-):
+    window: Positive = 0.025,
+    timestamp: Literal["center", "end"] = "center",
+    subtract_delay: bool = True,
+    start: Positive = 0.3,
+    sigma_a: Positive | None = None,
+    search: Literal["quarters", "room"] = "quarters",
+    **settings: Any,
+) -> IqTrack:
     """Find and track the target of Table 2 from IQ samples.
 
     Parameters
@@ -64,24 +68,30 @@ def track_iq(
     -----
     The box is `start_box`, and the speed limit that of the drives. Wrong times are those of samples
     that are delayed by less than they are.
+
+    Examples
+    --------
+    >>> from dopplerlib.systems.mittermaier2016 import read_simulated_iq
+    >>> iq, time, truth = read_simulated_iq()
+    >>> x, P, _ = track_iq(iq).at(1.0)
+    >>> bool(np.linalg.norm(x[0, :3] - truth[-1, :3]) < 0.05)
+    True
     """
-    _checks.instance("iq", iq, Baseband)
-    _checks.one_of("timestamp", timestamp, ("center", "end"))
-    s = scenario()
+    s = reported().scenario
     delay = iq.delay if subtract_delay else 0.0
     if timestamp == "end":
-        delay -= (round(_checks.moderate_number("window", window) * iq.fs) - 1) / 2 / iq.fs
+        delay -= (round(window * iq.fs) - 1) / 2 / iq.fs
     return track.track_iq(
         replace(iq, delay=delay),
         _room(),
-        speed_limit=signal_chain()["speed_limit_m_s"],
+        speed_limit=reported().signal_chain.speed_limit_m_s,
         velocity_random_walk=_checks.positive_number(
             "sigma_a", s.sigma_a if sigma_a is None else sigma_a
         )
         * np.sqrt(s.T),
         window=window,
         start=start,
-        search=_SEARCHES[_checks.one_of("search", search, tuple(_SEARCHES))],
+        search=_SEARCHES[search],
         **settings,
     )
 

@@ -1,25 +1,33 @@
 """How the error of the start grows with the noise (Fig 4), under any reading of the text."""
 
+from collections.abc import Iterable
 from dataclasses import field
 from functools import cache
+from typing import Annotated, Literal
 
 import numpy as np
 
-from ... import _checks
+from ..._hints import Array, Count, Index, Positive, between, checked, exactly, shaped
 from ..._progress import progress_bar
 from ..._records import record
+from ..._typing import FloatArray
 from ...estimation.maximum_likelihood import ml_initialize
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_shift
 from ...model.radar_array import RadarArray
-from .published import figure4_settings
+from .published import reported
 
 _PLANE = [True, True, False, True, True, False]
-_settings = cache(figure4_settings)
+Likelihood = Literal["constant_velocity", "stationary"]
+Speed = Annotated[float, between(0, 100)]  # m/s
+
+
+def _study():
+    return reported().figure4_study
 
 
 @cache
-def noise_levels():
+def noise_levels() -> FloatArray:
     """Return the variances of the noise levels of the figure.
 
     Returns
@@ -27,14 +35,14 @@ def noise_levels():
     ndarray, shape (31,)
         In Hz^2; read-only.
     """
-    noise = _settings()["noise"]
-    low, high = np.log10([noise["lowest"], noise["highest"]])
-    levels = 10.0 ** (low + (high - low) * np.arange(noise["levels"]) / (noise["levels"] - 1))
+    noise = _study().noise
+    low, high = np.log10([noise.lowest, noise.highest])
+    levels = 10.0 ** (low + (high - low) * np.arange(noise.levels) / (noise.levels - 1))
     levels.flags.writeable = False
     return levels
 
 
-def error_limits():
+def error_limits() -> tuple[float, float]:
     """Return what the text says that the averaged errors stay below.
 
     Returns
@@ -42,14 +50,15 @@ def error_limits():
     position, velocity : float
         In m and m/s.
     """
-    limits = _settings()["limits"]
-    return limits["position"], limits["velocity"]
+    limits = _study().limits
+    return limits.position, limits.velocity
 
 
 def _ours(name):
-    return field(default_factory=lambda: _settings()["ours"][name])
+    return field(default_factory=lambda: getattr(_study().ours, name))
 
 
+@checked
 @record
 class SweepReading:
     """What the text leaves open about Fig 4, decided in one way.
@@ -79,17 +88,18 @@ class SweepReading:
     ``data/mittermaier2016/figure4.toml``.
     """
 
-    velocity: str = _ours("velocity")
-    speed: tuple = field(default_factory=lambda: tuple(_settings()["ours"]["speed"]))
+    velocity: Literal["center", "direction", "disc", "square"] = _ours("velocity")
+    speed: tuple[Speed, Speed] = field(default_factory=lambda: tuple(_study().ours.speed.tolist()))
     shared: bool = _ours("shared")
-    likelihood: str = _ours("likelihood")
-    spacing: float = field(default_factory=lambda: _settings()["grid"]["spacing"])
-    box: str = _ours("box")
-    axis: str = _ours("axis")
+    likelihood: Likelihood = _ours("likelihood")
+    spacing: Positive = field(default_factory=lambda: _study().grid.spacing)
+    box: Literal["wide", "approaching", "region"] = _ours("box")
+    axis: Literal["y", "x"] = _ours("axis")
 
 
+@checked
 @record
-class Figure4:
+class NoiseSweep:
     """Errors of the start, averaged over the grid: one value for each level and each draw.
 
     Attributes
@@ -105,23 +115,31 @@ class Figure4:
         the Cramér-Rao bound, averaged over the grid.
     """
 
-    variance: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    median_position: np.ndarray
-    median_velocity: np.ndarray
-    bound_position: np.ndarray
-    bound_velocity: np.ndarray
+    variance: Annotated[FloatArray, exactly(None)]
+    position: Annotated[FloatArray, exactly(None, None)]
+    velocity: Annotated[FloatArray, exactly(None, None)]
+    median_position: Annotated[FloatArray, exactly(None, None)]
+    median_velocity: Annotated[FloatArray, exactly(None, None)]
+    bound_position: Array
+    bound_velocity: Array
 
 
-def figure4(
-    levels=None, draws=None, *, rng, reading=None, bound=True, progress=False, workers=None
-):  # fmt: skip
+@checked
+def run_noise_sweep(
+    levels: Iterable[Index] | None = None,
+    draws: Count | None = None,
+    *,
+    rng: np.random.Generator,
+    reading: SweepReading | None = None,
+    bound: bool = True,
+    progress: bool = False,
+    workers: Count | None = None,
+) -> NoiseSweep:
     """Run the study of Fig 4.
 
     Parameters
     ----------
-    levels : sequence of int, optional
+    levels : iterable of int, optional
         Numbers of the noise levels, 0 to 30; all if None.
     draws : int, optional
         Number of velocity draws; as many as the figure has markers at a level if None.
@@ -139,7 +157,7 @@ def figure4(
 
     Returns
     -------
-    Figure4
+    NoiseSweep
 
     Raises
     ------
@@ -149,23 +167,19 @@ def figure4(
 
     Examples
     --------
-    >>> result = figure4([0, 30], draws=2, rng=np.random.default_rng(1))
+    >>> result = run_noise_sweep([0, 30], draws=2, rng=np.random.default_rng(1))
     >>> result.position.shape, bool((result.position[1] > 10 * result.position[0]).all())
     ((2, 2), True)
     """
     reading = SweepReading() if reading is None else reading
-    settings, variance = _settings(), noise_levels()
+    settings, variance = _study(), noise_levels()
     levels = list(range(len(variance)) if levels is None else levels)
-    if not all(isinstance(k, int | np.integer) and 0 <= k < len(variance) for k in levels):
+    if not levels or max(levels) >= len(variance):
         raise ValueError(f"levels must be whole numbers from 0 to 30, got {levels}")
-    draws = settings["velocities"]["in_figure"] if draws is None else draws
-    draws = _checks.whole_number("draws", draws)
-    _checks.generator("rng", rng)
-    _checks.one_of("reading.box", reading.box, tuple(settings["ours"]["boxes"]))
-    _checks.one_of("reading.axis", reading.axis, ("x", "y"))
+    draws = settings.velocities.in_figure if draws is None else draws
 
-    T, samples = settings["sampling"]["T"], settings["sampling"]["samples"]
-    array = figure4_array(reading.axis)
+    T, samples = settings.sampling.T, settings.sampling.samples
+    array = sweep_array(reading.axis)
     streams = [child.spawn(1 + len(variance)) for child in rng.spawn(draws)]
     x = np.stack([_states(reading, own[0]) for own in streams])
     path = np.repeat(x[..., None, :], samples, axis=-2)
@@ -189,13 +203,14 @@ def figure4(
         unit = np.full((2, draws), np.nan)
     bounds = np.sqrt(variance[levels])[:, None, None] * unit
     parts = (values[:, i] for values in (mean, median, bounds) for i in (0, 1))
-    return Figure4(variance[levels], *parts)
+    return NoiseSweep(variance[levels], *parts)
 
 
 _PARTS = (np.s_[:2], np.s_[3:5])
 
 
-def mean_norm(P):
+@checked
+def mean_norm(P: Annotated[FloatArray, shaped(2, 2)]) -> FloatArray:
     """Return the mean length of a normally distributed vector in a plane.
 
     Parameters
@@ -219,14 +234,14 @@ def mean_norm(P):
     """
     from scipy.special import ellipe  # here: it takes longer to load than all the rest
 
-    P = np.asarray(P, float)
     middle = (P[..., 0, 0] + P[..., 1, 1]) / 2
     half = np.hypot((P[..., 0, 0] - P[..., 1, 1]) / 2, P[..., 0, 1])
     large = middle + half
     return np.sqrt(2 * large / np.pi) * ellipe(np.minimum(1.0, 2 * half / large))
 
 
-def figure4_array(axis=None):
+@checked
+def sweep_array(axis: Literal["x", "y"] | None = None) -> RadarArray:
     """Return the sensors of the study.
 
     Parameters
@@ -237,14 +252,20 @@ def figure4_array(axis=None):
     Returns
     -------
     RadarArray
+
+    Examples
+    --------
+    >>> len(sweep_array("x"))
+    5
     """
-    settings = dict(_settings()["array"])
+    settings = dict(_study().array.table)
     if settings.pop("shape") != "linear":
         raise ValueError("array in figure4.toml must have the shape linear")
-    return RadarArray.linear(**settings, axis=_settings()["ours"]["axis"] if axis is None else axis)
+    return RadarArray.linear(**settings, axis=_study().ours.axis if axis is None else axis)
 
 
-def grid_points(spacing=None):
+@checked
+def grid_points(spacing: Positive | None = None) -> FloatArray:
     """Return the positions of the study.
 
     Parameters
@@ -262,12 +283,13 @@ def grid_points(spacing=None):
     >>> grid_points().shape
     (315, 2)
     """
-    grid = _settings()["grid"]
-    spacing = grid["spacing"] if spacing is None else spacing
-    spacing = _checks.positive_number("spacing", spacing)
+    grid = _study().grid
+    spacing = grid.spacing if spacing is None else spacing
+    if spacing < 1e-3:
+        raise ValueError(f"spacing must be at least a millimeter, got {spacing}")
     axes = [
         low + spacing * np.arange(int((high - low) / spacing + 1e-9) + 1)
-        for low, high in (grid["x"], grid["y"])
+        for low, high in (grid.x, grid.y)
     ]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
 
@@ -279,7 +301,7 @@ def _states(reading, rng):
     x[:, :2] = points
     size = 1 if reading.shared else len(points)
     low, high = reading.speed
-    kind = _checks.one_of("reading.velocity", reading.velocity, _KINDS)
+    kind = reading.velocity
     if kind == "square":
         x[:, 3] = -rng.uniform(0, high, size)
         x[:, 4] = rng.uniform(-high, high, size)
@@ -299,14 +321,11 @@ def _states(reading, rng):
     return x
 
 
-_KINDS = ("center", "direction", "disc", "square")
-
-
 def _box(reading):
     """Return the bounds of the state; the first of the box is the distance from the array."""
     order = [0, 1, 3, 4] if reading.axis == "y" else [1, 0, 4, 3]
     box = np.zeros((2, 6))
-    box[:, order] = _settings()["ours"]["boxes"][reading.box]
+    box[:, order] = getattr(_study().ours.boxes, reading.box)
     return box
 
 

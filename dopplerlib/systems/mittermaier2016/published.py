@@ -1,33 +1,22 @@
 """What the paper prints and draws, from ``data/mittermaier2016``."""
 
-from functools import partial
+from functools import cache
+from typing import Annotated
 
 import numpy as np
 
-from ..._data import data, read_json, read_lines, read_toml
+from ... import _checks
+from ..._data import read_json, read_lines, read_toml
+from ..._hints import Array, Booleans, Positive, State, checked, exactly
 from ..._records import record
+from ..._typing import FloatArray
 from ...model.radar_array import RadarArray
 from ...model.scenario import Scenario
-
-data_file = partial(data, "mittermaier2016")
-
-
-@record
-class Table2:
-    """The start of the simulation example as Table 2 prints it.
-
-    Attributes
-    ----------
-    x0 : ndarray, shape (6,)
-        True initial state in m and m/s.
-    x_ml : ndarray, shape (6,)
-        Estimate from ten samples by maximum likelihood.
-    """
-
-    x0: np.ndarray
-    x_ml: np.ndarray
+from ...replication.documents import data_file
+from ...replication.published import Published, read_published
 
 
+@checked
 @record
 class PublishedFigure3:
     """The two error maps of Fig 3, read off a pixel image, and the settings that go with them.
@@ -56,25 +45,26 @@ class PublishedFigure3:
         First and last contour in m.
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    error: np.ndarray
-    below: np.ndarray
+    x: Annotated[FloatArray, exactly(None)]
+    y: Annotated[FloatArray, exactly(None)]
+    error: Array
+    below: Booleans
     array: RadarArray
-    velocity: np.ndarray
-    samples: tuple
-    T: float
-    sigma_f: float
-    top_speed: float
-    lowest: float
-    highest: float
+    velocity: Annotated[FloatArray, exactly(3)]
+    samples: tuple[int, ...]
+    T: Positive
+    sigma_f: Positive
+    top_speed: Positive
+    lowest: Positive
+    highest: Positive
 
     @property
-    def shown(self):
-        """Return `error` with `lowest` in it where the error is only known to be below."""
+    def shown(self) -> FloatArray:
+        """Published `error` with `lowest` in it where the error is only known to be below."""
         return np.where(self.below, self.lowest, self.error)
 
 
+@checked
 @record
 class PublishedFigure6:
     """The curves of Fig 6, read off the paper's vector graphics.
@@ -101,16 +91,17 @@ class PublishedFigure6:
         These positions in m, inverted from the 3-D view with the help of the error curves.
     """
 
-    time: np.ndarray
-    error: np.ndarray
-    nis: np.ndarray
-    skipped: np.ndarray
-    start: np.ndarray
-    first_error: np.ndarray
-    path_time: np.ndarray
-    path: np.ndarray
+    time: Annotated[FloatArray, exactly(None)]
+    error: Array
+    nis: Array
+    skipped: Booleans
+    start: State
+    first_error: Annotated[FloatArray, exactly(3)]
+    path_time: Annotated[FloatArray, exactly(None)]
+    path: Annotated[FloatArray, exactly(None, 3)]
 
 
+@checked
 @record
 class PublishedFigure4:
     """The dots of Fig 4, read off the paper's vector graphics.
@@ -123,45 +114,80 @@ class PublishedFigure4:
         Averaged errors in m and m/s, one column for each sequence in which they are drawn.
     """
 
-    variance: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
+    variance: Annotated[FloatArray, exactly(None)]
+    position: Annotated[FloatArray, exactly(None, None, check=_checks.measured)]
+    velocity: Annotated[FloatArray, exactly(None, None, check=_checks.measured)]
 
 
-def scenario():
-    """Return the simulation example of Section 4 and Table 2.
+@checked
+@record
+class Reported:
+    """All that the paper states and a computer can use.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        The simulation example of Section 4 and Table 2.
+    table2 : Published
+        True initial state `x0` and estimate `x_ml`.
+    quoted : Published
+        Numbers that Section 4 quotes in words; units are in the names.
+    signal_chain : Published
+        What is said about the signal chain; units are in the names.
+    figure3 : PublishedFigure3
+        The error maps.
+    figure4_study : Published
+        Settings of the study of Fig 4; under `ours` what the paper leaves open.
+    figure4 : PublishedFigure4
+        Its dots.
+    figure6 : PublishedFigure6
+        The curves of the example.
+    sources : dict of str to str
+        Where those stand that do not say it themselves.
+    """
+
+    scenario: Scenario
+    table2: Published
+    quoted: Published
+    signal_chain: Published
+    figure3: PublishedFigure3
+    figure4_study: Published
+    figure4: PublishedFigure4
+    figure6: PublishedFigure6
+    sources: dict[str, str]
+
+
+@cache
+def reported() -> Reported:
+    """Return what the paper states.
 
     Returns
     -------
-    Scenario
+    Reported
+
+    Examples
+    --------
+    >>> paper = reported()
+    >>> paper.scenario.samples, paper.quoted.nis_avg, paper.quoted.where
+    (1001, 5.82, 'Section 4, in words')
     """
-    return Scenario.from_toml(data_file("scenario.toml"))
-
-
-def table2():
-    """Return the two states that Table 2 prints.
-
-    Returns
-    -------
-    Table2
-    """
-    printed = read_json("mittermaier2016", "table2.json")
-    names = ("x", "y", "z", "vx", "vy", "vz")
-    return Table2(
-        *(
-            np.array([printed[key][name] for name in names])
-            for key in ("true_initial_state", "estimated_initial_state_mle")
-        )
+    scenario = Scenario.from_toml(data_file("mittermaier2016", "scenario.toml"))
+    printed = read_published(data_file("mittermaier2016", "table2.toml"))
+    study = read_published(data_file("mittermaier2016", "figure4.toml"))
+    return Reported(
+        scenario=scenario,
+        table2=printed.table2,
+        quoted=printed.quoted,
+        signal_chain=read_published(data_file("mittermaier2016", "signal_chain.toml")),
+        figure3=_figure3(),
+        figure4_study=study,
+        figure4=_figure4(study.velocities.in_figure),
+        figure6=_figure6(scenario.T, printed.table2.x_ml),
+        sources=read_toml("mittermaier2016", "sources.toml"),
     )
 
 
-def published_figure3():
-    """Return the digitized error maps of Fig 3.
-
-    Returns
-    -------
-    PublishedFigure3
-    """
+def _figure3():
     settings = read_toml("mittermaier2016", "figure3.toml")
     array, sampling = dict(settings["array"]), settings["sampling"]
     if array.pop("shape") != "linear":
@@ -187,19 +213,21 @@ def published_figure3():
     )
 
 
-def published_figure6():
-    """Return the digitized curves of Fig 6.
+def _figure4(sequences):
+    tables = [_table(f"fig4_{part}.csv") for part in ("position", "velocity")]
+    variance, level = np.unique(tables[0]["variance_hz2"], return_inverse=True)
+    dots = np.empty((2, len(variance), sequences))
+    for values, table in zip(dots, tables, strict=True):
+        values[level, table["series"].astype(int) - 1] = table["error"]
+    return PublishedFigure4(variance, *dots)
 
-    Returns
-    -------
-    PublishedFigure6
-    """
-    T = scenario().T
+
+def _figure6(T, x_ml):
     errors = _table("fig6_errors.csv")
     nis = _table("fig6_nis.csv")
     geometry = read_json("mittermaier2016", "fig6_geometry.json")
     initial, markers = geometry["initial"], geometry["estimated_path_markers"]["markers"]
-    start = table2().x_ml.copy()
+    start = x_ml.copy()
     start[0] = initial["x_hat_implied_by_mle_marker_m"]["from_u"]
     return PublishedFigure6(
         time=(nis["sample"] - 1) * T,
@@ -211,54 +239,6 @@ def published_figure6():
         path_time=np.array([(marker["sample"] - 1) * T for marker in markers]),
         path=np.array([marker["est_position_m"] for marker in markers]),
     )
-
-
-def published_figure4():
-    """Return the digitized dots of Fig 4.
-
-    Returns
-    -------
-    PublishedFigure4
-    """
-    tables = [_table(f"fig4_{part}.csv") for part in ("position", "velocity")]
-    variance, level = np.unique(tables[0]["variance_hz2"], return_inverse=True)
-    dots = np.empty((2, len(variance), figure4_settings()["velocities"]["in_figure"]))
-    for values, table in zip(dots, tables, strict=True):
-        values[level, table["series"].astype(int) - 1] = table["error"]
-    return PublishedFigure4(variance, *dots)
-
-
-def figure4_settings():
-    """Return the settings of the study of Fig 4, by name.
-
-    Returns
-    -------
-    dict
-        See ``data/mittermaier2016/figure4.toml``; under ``ours`` what the paper leaves open.
-    """
-    return read_toml("mittermaier2016", "figure4.toml")
-
-
-def signal_chain():
-    """Return what the paper says about its signal chain, by name.
-
-    Returns
-    -------
-    dict
-        Units are in the names; see ``data/mittermaier2016/signal_chain.toml``.
-    """
-    return read_toml("mittermaier2016", "signal_chain.toml")
-
-
-def quoted():
-    """Return the numbers that Table 2 and Section 4 quote in words, by name.
-
-    Returns
-    -------
-    dict
-        Units are in the names; see ``data/mittermaier2016/README.md``.
-    """
-    return read_json("mittermaier2016", "table2.json")["quoted"]
 
 
 def _table(name):

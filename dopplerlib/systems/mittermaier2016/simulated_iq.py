@@ -4,16 +4,18 @@ The files ``results/simulated_recording.*`` are what `write_simulated_iq` writes
 """
 
 from contextlib import nullcontext
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
 from ..._data import on_disk, results
 from ..._files import write_text
+from ..._typing import FloatArray
 from ...chain.baseband import Baseband
+from ...chain.simulation import simulate_baseband
 from ...signal.recording import Recording, read_sigmf, write_sigmf
-from .published import scenario
-from .received_iq import received
+from .published import reported
 
 # Everything that the recording depends on, beside the scenario.
 SIMULATED = {"seed": 20160907, "fs": 2000.0, "snr_db": 27.0, "amplitude": 0.4, "truth_step": 0.02}
@@ -22,21 +24,21 @@ _FILES = f"{_NAME}.sigmf-meta", f"{_NAME}.sigmf-data", f"{_NAME}.truth.csv"
 _HEAD = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
 
 
-def simulated_recording():
+def simulated_recording() -> tuple[Recording, FloatArray, FloatArray]:
     """Simulate the recording from its seed.
 
     Returns
     -------
     recording : Recording
-        Six channels of one second, with the modules' faults in them (`FAULTS`).
+        Six channels of one second, with the modules' faults in them (`MODULE_FAULTS`).
     time : ndarray, shape (K,)
         Times in s from the first sample.
     truth : ndarray, shape (K, 6)
         True states there.
     """
-    s = scenario()
+    s = reported().scenario
     rng = np.random.default_rng(SIMULATED["seed"])
-    iq = received(1, rng=rng, fs=SIMULATED["fs"], snr_db=SIMULATED["snr_db"], factor=1)
+    iq = simulate_baseband(s, 1, rng=rng, fs=SIMULATED["fs"], snr_db=SIMULATED["snr_db"], factor=1)
     carrier = 299_792_458.0 / s.array.wavelength
     time = np.arange(round(s.time[-1] / SIMULATED["truth_step"]) + 1) * SIMULATED["truth_step"]
     truth = np.tile(s.x0, (len(time), 1))
@@ -44,7 +46,7 @@ def simulated_recording():
     return Recording(SIMULATED["amplitude"] * iq.x[0], SIMULATED["fs"], carrier), time, truth
 
 
-def write_simulated_iq(folder):
+def write_simulated_iq(folder: str | PathLike[str]) -> list[Path]:
     """Write the recording as SigMF and its truth as CSV.
 
     Parameters
@@ -73,7 +75,9 @@ def write_simulated_iq(folder):
     return [meta, data, table]
 
 
-def read_simulated_iq(folder=None):
+def read_simulated_iq(
+    folder: str | PathLike[str] | None = None,
+) -> tuple[Baseband, FloatArray, FloatArray]:
     """Read the recording and its truth.
 
     Parameters
@@ -100,7 +104,7 @@ def read_simulated_iq(folder=None):
         meta, _, table = (folder / name for name in _FILES)
         recording = read_sigmf(meta)
         rows = np.genfromtxt(table, delimiter=",", skip_header=1)
-    array = scenario().array
+    array = reported().scenario.array
     if not np.isclose(recording.wavelength, array.wavelength, rtol=1e-6):
         raise ValueError(
             f"the recording must have the wavelength {array.wavelength} m, "

@@ -1,20 +1,25 @@
 """The start of the simulation example, estimated as often as wanted (Table 2)."""
 
 from dataclasses import replace
+from typing import Annotated, Literal
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from ... import _checks
+from ..._hints import Count, Positive, Runs, State, between, checked, exactly
 from ..._records import record
+from ..._typing import FloatArray
 from ...estimation.maximum_likelihood import InitialEstimate, ml_initialize
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_jacobian, doppler_shift
 from ...model.radar_array import RadarArray
 from ...model.simulation import simulate
-from .published import published_figure3, quoted, scenario
+from .published import reported
+
+Likelihood = Literal["constant_velocity", "stationary"]
 
 
+@checked
 @record
 class Starts:
     """Estimates of the first state of the simulation example from short records.
@@ -30,11 +35,14 @@ class Starts:
     """
 
     start: InitialEstimate
-    position: np.ndarray
-    velocity: np.ndarray
+    position: Annotated[FloatArray, exactly(None)]
+    velocity: Annotated[FloatArray, exactly(None)]
 
 
-def start_box(reach=1.5, side=0.75, near=0.1):
+@checked
+def start_box(
+    reach: Positive = 1.5, side: Positive = 0.75, near: Positive = 0.1
+) -> tuple[FloatArray, FloatArray]:
     """Return a room before the ring, and the drives' velocities, as a box for `ml_initialize`.
 
     Parameters
@@ -54,16 +62,28 @@ def start_box(reach=1.5, side=0.75, near=0.1):
     ------
     ValueError
         If a number is not finite and positive, or `near` is not below `reach`.
+
+    Examples
+    --------
+    >>> start_box()[1].tolist()
+    [1.5, 0.75, 0.75, 2.0, 2.0, 2.0]
     """
-    reach, near = _checks.positive_number("reach", reach), _checks.positive_number("near", near)
-    side = _checks.positive_number("side", side)
     if near >= reach:
         raise ValueError(f"near must be below reach, {reach}, got {near}")
-    v = published_figure3().top_speed
+    v = reported().figure3.top_speed
     return np.array([near, -side, -side, -v, -v, -v]), np.array([reach, side, side, v, v, v])
 
 
-def table2_starts(runs, *, rng, samples=None, likelihood="constant_velocity", box=None, array=None):
+@checked
+def table2_starts(
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    samples: Count | None = None,
+    likelihood: Likelihood = "constant_velocity",
+    box: tuple[State, State] | None = None,
+    array: RadarArray | None = None,
+) -> Starts:
     """Estimate the start of Table 2 from new noise.
 
     Parameters
@@ -89,6 +109,11 @@ def table2_starts(runs, *, rng, samples=None, likelihood="constant_velocity", bo
     ------
     ValueError
         If an argument is refused by `simulate` or `ml_initialize`.
+
+    Examples
+    --------
+    >>> table2_starts(1, rng=np.random.default_rng(1)).position.shape
+    (1,)
     """
     s = _record(samples, array)
     _, z = simulate(s, runs, rng=rng)
@@ -99,7 +124,14 @@ def table2_starts(runs, *, rng, samples=None, likelihood="constant_velocity", bo
     return Starts(start, position, velocity)
 
 
-def start_misfit(x, *, samples=None, likelihood="constant_velocity", rounding=0.0):
+@checked
+def start_misfit(
+    x: State,
+    *,
+    samples: Count | None = None,
+    likelihood: Likelihood = "constant_velocity",
+    rounding: Annotated[float, between(0, 1)] = 0.0,
+) -> float:
     """Return how far the shifts of a state are from those of the true start of Table 2.
 
     Parameters
@@ -129,12 +161,13 @@ def start_misfit(x, *, samples=None, likelihood="constant_velocity", rounding=0.
     -----
     Noise makes `x` more likely than the truth with the probability Phi(-distance / 2): the two
     chi-squares differ by distance^2 - 2 distance n, where n is one standard normal number.
+
+    Examples
+    --------
+    >>> round(start_misfit(reported().table2.x_ml, rounding=0.0005))
+    18
     """
     s = _record(samples)
-    x = _checks.finite("x", x, (6,))
-    if x.shape != (6,):
-        raise ValueError(f"x must be one state, got an array of shape {x.shape}")
-    _checks.one_of("likelihood", likelihood, ("constant_velocity", "stationary"))
     difference, slopes = [], []
     for t in s.time:
         F = np.eye(6)
@@ -144,13 +177,13 @@ def start_misfit(x, *, samples=None, likelihood="constant_velocity", rounding=0.
         slopes.append(np.hstack([H, -H0]))
     difference, slopes = np.concatenate(difference), np.concatenate(slopes)
     if rounding:
-        limit = _checks.positive_number("rounding", rounding)
-        moved = lsq_linear(slopes * limit, -difference, (-1, 1)).x
-        difference = difference + slopes @ (limit * moved)
+        moved = lsq_linear(slopes * rounding, -difference, (-1, 1)).x
+        difference = difference + slopes @ (rounding * moved)
     return float(np.linalg.norm(difference) / s.sigma_f)
 
 
-def samples_needed(error=None, *, array=None):
+@checked
+def samples_needed(error: Positive | None = None, *, array: RadarArray | None = None) -> int:
     """Return how long a record must be for its bound to fall to an error.
 
     Parameters
@@ -169,10 +202,14 @@ def samples_needed(error=None, *, array=None):
     ------
     ValueError
         If an argument is refused, or a record as long as the example does not suffice.
+
+    Examples
+    --------
+    >>> samples_needed(0.5) < samples_needed()
+    True
     """
-    error = quoted()["position_error_norm_m"] if error is None else error
-    error = _checks.positive_number("error", error)
-    longest = scenario().samples
+    error = reported().quoted.position_error_norm_m if error is None else error
+    longest = reported().scenario.samples
     low, high = 1, longest  # the bound falls with every sample: bisection
     while low < high:
         middle = (low + high) // 2
@@ -193,7 +230,6 @@ def _bound(s):
 
 def _record(samples=None, array=None):
     """Return the simulation example, cut to the record of the start."""
-    s = scenario()
-    samples = round(quoted()["mle_integration_time_s"] / s.T) if samples is None else samples
-    array = s.array if array is None else _checks.instance("array", array, RadarArray)
-    return replace(s, samples=samples, array=array)
+    s = reported().scenario
+    samples = round(reported().quoted.mle_integration_time_s / s.T) if samples is None else samples
+    return replace(s, samples=samples, array=s.array if array is None else array)

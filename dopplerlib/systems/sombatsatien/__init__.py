@@ -7,7 +7,7 @@ from ..._lazy import attach, by_name
 
 _HOME = by_name(
     {
-        "published": "Reported ReportedRun ReportedStart reported",
+        "published": "Reported reported",
         "descent": "local_start",
         "student_filter": "student_ekf student_jacobian",
         "variants": "PostMortem consistent_runs post_mortem repairs reported_record ring_scenario",

@@ -13,8 +13,6 @@ from .diagnosis import nearer_to_twin as nearer_to_twin
 from .diagnosis import outcomes as outcomes
 from .diagnosis import reported_outcomes as reported_outcomes
 from .published import Reported as Reported
-from .published import ReportedRun as ReportedRun
-from .published import ReportedStart as ReportedStart
 from .published import reported as reported
 from .student_filter import student_ekf as student_ekf
 from .student_filter import student_jacobian as student_jacobian
@@ -28,8 +26,6 @@ from .variants import ring_scenario as ring_scenario
 __all__ = [
     "PostMortem",
     "Reported",
-    "ReportedRun",
-    "ReportedStart",
     "consistent_runs",
     "final_bound",
     "local_start",

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..._hints import Runs, checked
 from ...evaluation.consistency import chi2_interval
 from ...evaluation.intervals import proportion_interval, quantile_interval
 from ...model.doppler import doppler_jacobian
@@ -15,7 +16,8 @@ from .variants import post_mortem, reported_record
 AXES = "xyz"
 
 
-def evidence(*, rng, runs=400):
+@checked
+def evidence(*, rng: np.random.Generator, runs: Runs = 400) -> dict[str, object]:
     """Collect the evidence for ``data/sombatsatien/claims.toml``.
 
     Parameters
@@ -29,8 +31,13 @@ def evidence(*, rng, runs=400):
     -------
     dict
         By the id of the claim; see `judge_all`.
+
+    Raises
+    ------
+    ValueError
+        If `rng` is not a generator, or `runs` is not a positive whole number.
     """
-    paper, s = mittermaier2016.scenario(), reported().scenario
+    paper, s = mittermaier2016.reported().scenario, reported().scenario
     as_reported = post_mortem(runs, rng=rng)
     sign = post_mortem(100, rng=rng, jacobian="derived")
     repaired = post_mortem(runs, rng=rng, jacobian="derived", plane="x", start="long")

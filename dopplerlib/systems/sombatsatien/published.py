@@ -1,78 +1,13 @@
 """What the report states, from ``data/sombatsatien``."""
 
-from functools import cache, partial
-from typing import Annotated
+from functools import cache
 
-from ..._data import data, read_toml
-from ..._hints import Count, Index, Positive, Real, State, checked, exactly
+from ..._data import read_toml
+from ..._hints import checked
 from ..._records import record
-from ..._typing import FloatArray
 from ...model.scenario import Scenario
-
-data_file = partial(data, "sombatsatien")
-
-
-@checked
-@record
-class ReportedStart:
-    """How the report finds an initial estimate, and the estimate that it found.
-
-    Attributes
-    ----------
-    samples : int
-        Number of first samples whose average is explained.
-    guess : ndarray, shape (6,)
-        Where the one search begins.
-    lower, upper : ndarray, shape (6,)
-        Bounds of the state.
-    estimate : ndarray, shape (6,)
-        The start that is printed.
-    """
-
-    samples: Count
-    guess: State
-    lower: State
-    upper: State
-    estimate: State
-
-    @property
-    def box(self) -> tuple:
-        """Lower and upper bounds of the state, as a start takes them."""
-        return self.lower, self.upper
-
-
-@checked
-@record
-class ReportedRun:
-    """What the report states of its one run, in m and m/s.
-
-    Attributes
-    ----------
-    tracked : int
-        Number of samples that the filter takes.
-    position_rmse, velocity_rmse : float
-        Root mean square errors over them.
-    final_true_x, final_x : float
-        Distance x at the last one, true and estimated.
-    final_position_error : float
-        There.
-    final_velocity : ndarray, shape (3,)
-        Estimated there.
-    initial_position_error : float
-        Read off a curve by the report itself.
-    settled_position_error : ndarray, shape (2,)
-        The same: between which values.
-    """
-
-    tracked: Count
-    position_rmse: Positive
-    velocity_rmse: Positive
-    final_true_x: Real
-    final_x: Real
-    final_position_error: Positive
-    final_velocity: Annotated[FloatArray, exactly(3)]
-    initial_position_error: Positive
-    settled_position_error: Annotated[FloatArray, exactly(2)]
+from ...replication.documents import data_file
+from ...replication.published import Published, read_published
 
 
 @checked
@@ -84,20 +19,21 @@ class Reported:
     ----------
     scenario : Scenario
         The simulation.
-    start : ReportedStart
-        Its initial estimate.
-    seed : int
-        Of the noise, in NumPy's legacy generator.
-    run : ReportedRun
-        Its results.
+    start : Published
+        How the report finds its initial estimate: from the average of the first `samples`, by a
+        search from `guess` between `lower` and `upper`; and the `estimate` that it found.
+    noise : Published
+        The `seed` of its noise, in NumPy's legacy generator.
+    run : Published
+        Results of its one run, in m and m/s.
     sources : dict of str to str
-        Where each of them stands, and how it was obtained.
+        Where those stand that do not say it themselves.
     """
 
     scenario: Scenario
-    start: ReportedStart
-    seed: Index
-    run: ReportedRun
+    start: Published
+    noise: Published
+    run: Published
     sources: dict[str, str]
 
 
@@ -111,14 +47,14 @@ def reported() -> Reported:
 
     Examples
     --------
-    >>> reported().run.final_x, reported().sources["run"]
-    (-0.1816, 'Section 4 and Fig 6, and the notebook; errors at the start and settled read off')
+    >>> reported().run.final_x, reported().run.where
+    (-0.1816, 'Section 4 and Fig 6, and the notebook')
     """
-    tables = read_toml("sombatsatien", "reported.toml")
+    tables = read_published(data_file("sombatsatien", "reported.toml"))
     return Reported(
-        scenario=Scenario.from_toml(data_file("scenario.toml")),
-        start=ReportedStart(**tables["start"]),
-        seed=tables["noise"]["seed"],
-        run=ReportedRun(**tables["result"]),
+        scenario=Scenario.from_toml(data_file("sombatsatien", "scenario.toml")),
+        start=tables.start,
+        noise=tables.noise,
+        run=tables.run,
         sources=read_toml("sombatsatien", "sources.toml"),
     )

@@ -104,7 +104,7 @@ def reported_record() -> FloatArray:
     The notebook fixes the seed of NumPy's legacy generator, whose numbers never change.
     """
     s = reported().scenario
-    noise = np.random.RandomState(reported().seed).standard_normal((s.samples, len(s.array)))
+    noise = np.random.RandomState(reported().noise.seed).standard_normal((s.samples, len(s.array)))
     return doppler_shift(s.truth, s.array) + s.sigma_f * noise
 
 
@@ -275,6 +275,6 @@ def _start(name, z, s, settings, true_start):
     if name == "truth":
         return true_start, s.P0
     if name == "as reported":
-        return local_start(z, s.array, settings.guess, settings.box)[0], s.P0
-    found = ml_initialize(z, s.array, s.sigma_f, s.T, settings.box, at="last")
+        return local_start(z, s.array, settings.guess, (settings.lower, settings.upper))[0], s.P0
+    found = ml_initialize(z, s.array, s.sigma_f, s.T, (settings.lower, settings.upper), at="last")
     return found.x, found.P if name == "long" else s.P0

@@ -10,6 +10,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dopplerlib.chain.baseband import Baseband
+from dopplerlib.chain.phase_fit import fit_phases
+from dopplerlib.chain.simulation import simulate_baseband
 from dopplerlib.signal.front_end import lowpass_decimate
 from dopplerlib.signal.synthesis import complex_noise
 from dopplerlib.signal.validity import valid_samples
@@ -63,17 +66,19 @@ def broken(iq, fault, name):
 
 
 def errors(iq, **settings):
-    return paper.judged(paper.track_iq(iq, **settings)).error
+    return paper.track_errors(paper.track_iq(iq, **settings)).error
 
 
 @pytest.fixture(scope="module")
 def iq():
-    return paper.received(40, rng=np.random.default_rng(82))
+    return simulate_baseband(paper.reported().scenario, 40, rng=np.random.default_rng(82))
 
 
 @pytest.fixture(scope="module")
 def clean():
-    return paper.received(2, rng=np.random.default_rng(83), faults=False)
+    return simulate_baseband(
+        paper.reported().scenario, 2, rng=np.random.default_rng(83), faults=False
+    )
 
 
 @pytest.fixture(scope="module")
@@ -120,13 +125,13 @@ def test_the_track_is_as_good_as_that_of_five_modules(iq, usual, name):
 @pytest.mark.parametrize("fault", ["stuck, rounding of 1e-4", "not finite"])
 def test_what_is_invalid_before_the_low_pass_stays_so_behind_it(usual, fault):
     """Every error is within six times the average of five modules, see above."""
-    raw = paper.received(2, rng=np.random.default_rng(84), factor=1)
+    raw = simulate_baseband(paper.reported().scenario, 2, rng=np.random.default_rng(84), factor=1)
 
     def filtered(x, valid):
         y, fs, delay, valid = lowpass_decimate(x, raw.fs, 5, valid=valid)
         full = int(np.ceil(2 * delay * fs - 1e-9))
         first = full / fs
-        return paper.Baseband(y[..., full:], fs, raw.array, delay, first, valid=valid[..., full:])
+        return Baseband(y[..., full:], fs, raw.array, delay, first, valid=valid[..., full:])
 
     for name in WHERE:
         x = broken(raw, fault, name)[0].x
@@ -164,9 +169,9 @@ def test_a_path_fitted_to_phases_leaves_out_what_is_invalid(iq):
         found, bad = broken(few, "stuck", name)
         state = paper.track_iq(found).at(1.0)[0]
         with np.errstate(all="raise"):
-            one = paper.fit_phases(found, state, 1.0)
-        np.testing.assert_allclose(one, paper.fit_phases(replace(few, valid=~bad), state, 1.0))
-        end = paper.scenario().x0[:3] + paper.scenario().x0[3:]
+            one = fit_phases(found, state, 1.0)
+        np.testing.assert_allclose(one, fit_phases(replace(few, valid=~bad), state, 1.0))
+        end = paper.reported().scenario.x0[:3] + paper.reported().scenario.x0[3:]
         assert (np.linalg.norm(one[:, :3] - end, axis=1) < 1e-3).all()
 
 

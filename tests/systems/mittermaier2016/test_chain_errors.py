@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from dopplerlib.chain.track import IqTrack
 from dopplerlib.systems import mittermaier2016 as paper
 
-S = paper.scenario()
+S = paper.reported().scenario
 TIME = np.array([0.1, 0.2, 0.3, 0.4])
 LATER = 0.03  # a shift is known so long after the moment it belongs to
 
@@ -63,7 +63,7 @@ def _predicted(P, ahead, sigma):
 
 def test_nees_is_the_squared_error_in_units_of_the_covariance(found):
     """The first hypothesis is off by one in all six, and predicted for LATER."""
-    r = paper.judged(found, (0.23,))
+    r = paper.track_errors(found, (0.23,))
     off = -np.r_[np.full(3, 1 + LATER), np.ones(3)]
     expected = off @ np.linalg.inv(_predicted(found.P[0, 0, 1], LATER, 0.5)) @ off
     assert_allclose(r.error, [[np.sqrt(3) * (1 + LATER)]])
@@ -72,5 +72,5 @@ def test_nees_is_the_squared_error_in_units_of_the_covariance(found):
 
 def test_nis_is_that_of_the_hypothesis_that_counts_at_the_last_moment(found):
     for moments, mean in (((0.23,), 2.0), ((0.23, 0.33), 5.0)):
-        assert_array_equal(paper.judged(found, moments).nis, [mean])
+        assert_array_equal(paper.track_errors(found, moments).nis, [mean])
     assert_array_equal(found.final_nis, [[1.0, 2, 3]])

@@ -20,18 +20,18 @@ def test_every_part_of_the_paper_has_claims():
 
 def test_what_the_paper_quotes_is_what_is_judged():
     """The numbers of claims.toml and of table2.json were typed independently."""
-    quoted, published = paper.quoted(), {c.id: c.published for c in CLAIMS}
-    assert published["nis-average"] == published["nis-average-drawn"] == quoted["nis_avg"]
-    assert published["nis-inside"] == pytest.approx(100 * quoted["fraction_nis_inside_95"])
-    assert list(published["chi-square-interval"]) == quoted["nis_bounds_95"]
+    quoted, published = paper.reported().quoted, {c.id: c.published for c in CLAIMS}
+    assert published["nis-average"] == published["nis-average-drawn"] == quoted.nis_avg
+    assert published["nis-inside"] == pytest.approx(100 * quoted.fraction_nis_inside_95)
+    assert list(published["chi-square-interval"]) == quoted.nis_bounds_95.tolist()
     means = [published["innovation-low"], published["innovation-high"]]
-    assert means == quoted["innovation_mean_range_hz"]
-    assert published["nees-initial"] == quoted["initial_nees"]
-    assert published["table2-position-norm"] == quoted["position_error_norm_m"]
-    assert published["table2-velocity-norm"] == quoted["velocity_error_norm_m_s"]
-    assert published["start-drawn"] == paper.table2().x_ml[0]
-    true, estimated = (quoted[f"final_{of}_position_m"] for of in ("true", "estimated"))
-    assert list(published["final-true"]) == true
+    assert means == quoted.innovation_mean_range_hz.tolist()
+    assert published["nees-initial"] == quoted.initial_nees
+    assert published["table2-position-norm"] == quoted.position_error_norm_m
+    assert published["table2-velocity-norm"] == quoted.velocity_error_norm_m_s
+    assert published["start-drawn"] == paper.reported().table2.x_ml[0]
+    true, estimated = (getattr(quoted, f"final_{of}_position_m") for of in ("true", "estimated"))
+    assert list(published["final-true"]) == true.tolist()
     error = 100 * np.abs(np.subtract(true, estimated))
     np.testing.assert_allclose(published["final-errors-drawn"], error, atol=1e-9)
     # The norm is stated to a unit of its own last digit.
@@ -47,7 +47,7 @@ def test_an_acceleration_has_the_unit_of_a_speed_per_time():
 
 def test_a_constant_state_is_an_assumption_for_table_2_and_a_mistake_for_figure_3():
     """By the shifts at the middle of the window, in standard errors of a mean of ten."""
-    s, drawn = paper.scenario(), paper.published_figure3()
+    s, drawn = paper.reported().scenario, paper.reported().figure3
     middle = np.eye(6)
     middle[:3, 3:] = 4.5 * s.T * np.eye(3)
     error = s.sigma_f / np.sqrt(10)
@@ -84,14 +84,14 @@ def test_one_sample_of_a_line_does_not_see_where_the_target_is_heading(place):
 
 def test_the_drawn_error_of_z_at_the_first_sample_is_not_that_of_table_2():
     """Both columns may be off by half a millimeter, and the velocity adds less in a millisecond."""
-    table, drawn = paper.table2(), paper.published_figure6()
+    table, drawn = paper.reported().table2, paper.reported().figure6
     difference = drawn.first_error[2] - abs(table.x0 - table.x_ml)[2]
-    assert difference > 2 * 0.0005 + abs(table.x0 - table.x_ml)[5] * paper.scenario().T
+    assert difference > 2 * 0.0005 + abs(table.x0 - table.x_ml)[5] * paper.reported().scenario.T
 
 
 def test_turning_the_ring_hardly_changes_the_bound():
     """Six sensors on a circle: the bound on z depends on the angle by a few percent."""
-    s = paper.scenario()
+    s = paper.reported().scenario
     for samples in (10, 100, 1000):
         rings = [RadarArray.ring(6, 0.2, phase=np.deg2rad(a)) for a in range(0, 60, 10)]
         z = [

@@ -11,12 +11,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.stats import chi2
 
 from dopplerlib import crlb, doppler_shift
+from dopplerlib.chain.simulation import simulate_baseband
 from dopplerlib.estimation.maximum_likelihood import ImplausibleStart
 from dopplerlib.signal.frequency import ml_frequency_dc
 from dopplerlib.signal.laws import overlap_correlation
 from dopplerlib.systems import mittermaier2016 as paper
 
-S = paper.scenario()
+S = paper.reported().scenario
 SPEED = np.linalg.norm(S.x0[3:])
 RUNS = 60
 
@@ -29,12 +30,14 @@ def states(time):
 
 @pytest.fixture(scope="module")
 def iq():
-    return paper.received(RUNS, rng=np.random.default_rng(71))
+    return simulate_baseband(paper.reported().scenario, RUNS, rng=np.random.default_rng(71))
 
 
 @pytest.fixture(scope="module")
 def clean():
-    return paper.received(1, rng=np.random.default_rng(72), snr_db=None, faults=False)
+    return simulate_baseband(
+        paper.reported().scenario, 1, rng=np.random.default_rng(72), snr_db=None, faults=False
+    )
 
 
 @pytest.fixture(scope="module")
@@ -89,7 +92,7 @@ def test_nis_does_not_see_a_wrong_time_and_nees_does(iq, found):
     wrong = paper.track_iq(iq, timestamp="end", subtract_delay=False)
     assert_array_equal(wrong.nis, found.nis)
     assert_array_equal(wrong.score, found.score)
-    right, late = paper.judged(found), paper.judged(wrong)
+    right, late = paper.track_errors(found), paper.track_errors(wrong)
     assert np.median(late.nees[1]) > 100 * np.median(right.nees[1])
     assert_allclose(np.median(late.error[1]), SPEED * (iq.delay + 0.01225), rtol=0.03)
 
@@ -132,7 +135,7 @@ def test_the_covariance_of_a_start_is_the_inverse_information(found, iq):
 
 def test_a_whole_record_is_found_and_kept(found):
     """Each error is below 5 cm: an outright failure in 1 of 60 would show."""
-    assert (paper.judged(found).error < 0.05).all()
+    assert (paper.track_errors(found).error < 0.05).all()
 
 
 def test_the_final_range_is_known_to_less_than_a_centimeter(found):
@@ -148,7 +151,7 @@ def test_nees_of_windows_side_by_side_is_that_of_a_consistent_filter(found):
     The mean of 60 chi-squares with 6 degrees of freedom has a deviation of 0.45; the deviations are
     measured and the filter is linearized, so twice the tail is allowed: a false alarm of 1e-5.
     """
-    assert 4 < paper.judged(found).nees[0].mean() < 10
+    assert 4 < paper.track_errors(found).nees[0].mean() < 10
 
 
 def test_nis_is_low_for_two_reasons(iq, found):
@@ -172,21 +175,23 @@ def test_nis_is_low_for_two_reasons(iq, found):
 def test_carrying_hypotheses_saves_short_starts(iq):
     """100 ms decide between the twins like a coin; later shifts decide well."""
     short = paper.track_iq(iq, start=0.1)
-    carried, first = (paper.judged(short, carry=carry).error[1] for carry in (True, False))
+    carried, first = (paper.track_errors(short, carry=carry).error[1] for carry in (True, False))
     # A third of the runs is saved; that this happens in none of 60 has a probability of 1e-11.
     assert np.mean(carried < 0.01) > np.mean(first < 0.01)
 
 
 def test_a_constant_left_in_spoils_the_position(iq, found):
     left = paper.track_iq(iq, remove_dc=False, balance=False)
-    assert np.median(paper.judged(left).error[0]) > 5 * np.median(paper.judged(found).error[0])
+    assert np.median(paper.track_errors(left).error[0]) > 5 * np.median(
+        paper.track_errors(found).error[0]
+    )
 
 
 def test_inflating_changes_the_belief_and_hardly_the_estimate(iq):
     few = replace(iq, x=iq.x[:30])
     plain, wide = (paper.track_iq(few, hop=0.0125, variance_inflation=c) for c in (1.0, 2.0))
     assert_allclose(wide.shift_std, np.sqrt(2) * plain.shift_std)
-    a, b = paper.judged(plain), paper.judged(wide)
+    a, b = paper.track_errors(plain), paper.track_errors(wide)
     # Q is small, so the gain hardly notices and P doubles nearly.
     assert np.median(a.nees[0]) == pytest.approx(2 * np.median(b.nees[0]), rel=0.2)
 
@@ -197,7 +202,7 @@ def test_tracks_are_not_better_than_the_bound(found):
     The sum of squares over the bound is at least chi-square of 60 in one direction.
     """
     P = paper.position_bound(0.5, 0.025, 1e6, first=0.005)
-    ratio = np.mean(paper.judged(found).error[0] ** 2) / np.trace(P)
+    ratio = np.mean(paper.track_errors(found).error[0] ** 2) / np.trace(P)
     assert ratio > chi2.ppf(1e-6, RUNS) / RUNS
 
 
@@ -207,13 +212,13 @@ def test_the_innovations_of_overlapping_windows_remember_and_nis_does_not_notice
     overlap = paper.track_iq(few, hop=0.0025)
     half = paper.track_iq(few, hop=0.0125)
     apart, close, middle = (
-        paper.judged(t).lag1_autocorrelation.mean() for t in (found, overlap, half)
+        paper.track_errors(t).lag1_autocorrelation.mean() for t in (found, overlap, half)
     )
     # The law of overlap says 0.70 at a tenth of the window and -0.25 at half of it.
     assert abs(apart) < 0.1
     assert close == pytest.approx(overlap_correlation(0.1), abs=0.1)
     assert middle == pytest.approx(overlap_correlation(0.5), abs=0.1)
-    nis = [paper.judged(t).nis.mean() for t in (found, overlap)]
+    nis = [paper.track_errors(t).nis.mean() for t in (found, overlap)]
     assert nis[1] == pytest.approx(nis[0], rel=0.1)
 
 
@@ -226,7 +231,9 @@ def test_a_weaker_passband_means_wider_deviations(iq, found):
 
 @pytest.fixture(scope="module")
 def undisturbed():
-    return paper.received(6, rng=np.random.default_rng(76), faults=False)
+    return simulate_baseband(
+        paper.reported().scenario, 6, rng=np.random.default_rng(76), faults=False
+    )
 
 
 RAW = {"remove_dc": False, "balance": False}
@@ -270,7 +277,7 @@ def test_five_good_modules_and_a_dead_one_still_track(iq, fault):
     assert np.isnan(f.shift[:, :, 2]).all()
     assert np.isfinite(np.delete(f.shift, 2, axis=2)).all()
     # All 10 below 3 cm: the full array has a median of 7 mm there.
-    assert (paper.judged(f).error[0] < 0.03).all()
+    assert (paper.track_errors(f).error[0] < 0.03).all()
 
 
 def test_without_any_echo_nothing_is_claimed(undisturbed):
@@ -286,16 +293,20 @@ def test_the_joint_estimator_does_what_the_removal_of_a_known_constant_does(iq, 
     joint = paper.track_iq(few, estimator=ml_frequency_dc, **RAW)
     image = paper.track_iq(few, balance=False)
     spoiled = paper.track_iq(few, **RAW)
-    joint, image, spoiled = (np.median(paper.judged(f).error[0]) for f in (joint, image, spoiled))
+    joint, image, spoiled = (
+        np.median(paper.track_errors(f).error[0]) for f in (joint, image, spoiled)
+    )
     assert joint < spoiled / 5
     assert joint < 3 * image
 
 
 def test_the_mean_of_an_echo_that_grows_is_not_the_constant():
     """Its end is a thousand times as strong in power; until 0.3 s it hardly grows."""
-    iq = paper.received(15, rng=np.random.default_rng(78), amplitude="r^-2")
+    iq = simulate_baseband(
+        paper.reported().scenario, 15, rng=np.random.default_rng(78), amplitude="r^-2"
+    )
     whole, early = (
-        np.median(paper.judged(paper.track_iq(iq, dc_until=until)).error[0])
+        np.median(paper.track_errors(paper.track_iq(iq, dc_until=until)).error[0])
         for until in (None, 0.3)
     )
     assert early < whole / 2
@@ -308,7 +319,7 @@ def test_the_shifts_of_an_echo_that_grows_become_better():
     grows inside a window, so that the shift is that of a later moment than its middle.
     """
     settings = {"amplitude": "r^-2", "faults": False}
-    iq = paper.received(15, rng=np.random.default_rng(79), **settings)
+    iq = simulate_baseband(paper.reported().scenario, 15, rng=np.random.default_rng(79), **settings)
     f = paper.track_iq(iq, window=0.01, **RAW)
     error = f.shift - doppler_shift(states(f.time), S.array)
     r = np.linalg.norm(states(f.time)[:, None, :3] - S.array.positions, axis=-1)
@@ -340,7 +351,9 @@ def test_what_makes_no_sense_is_refused_by_name(iq, found):
 
 @pytest.mark.parametrize("wrong", ["I and Q", "sensors"])
 def test_exchanged_branches_or_sensors_are_warned_of(wrong):
-    iq = paper.received(2, rng=np.random.default_rng(5), fs=2000.0, snr_db=30.0, factor=1)
+    iq = simulate_baseband(
+        paper.reported().scenario, 2, rng=np.random.default_rng(5), fs=2000.0, snr_db=30.0, factor=1
+    )
     x = iq.x.imag + 1j * iq.x.real if wrong == "I and Q" else iq.x[:, [3, 1, 2, 0, 4, 5]]
     with pytest.warns(ImplausibleStart, match=r"of run 0: chi-square \d+ for \d+ degrees"):
         paper.track_iq(replace(iq, x=x))

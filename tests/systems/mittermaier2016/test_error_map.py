@@ -13,19 +13,19 @@ PLANE = np.array([True, True, False, True, True, False])
 
 @pytest.fixture(scope="module")
 def published():
-    return paper.published_figure3()
+    return paper.reported().figure3
 
 
 @pytest.fixture(scope="module")
 def one():
     """Return our map from one sample."""
-    return paper.figure3(DRAWS, rng=np.random.default_rng(31))
+    return paper.error_map(DRAWS, rng=np.random.default_rng(31))
 
 
 @pytest.fixture(scope="module")
 def ten():
     """Return our map from ten samples of a target that moves, and is assumed to."""
-    return paper.figure3(
+    return paper.error_map(
         DRAWS, rng=np.random.default_rng(32), samples=10, likelihood="constant_velocity"
     )
 
@@ -96,7 +96,7 @@ def test_where_errors_are_small_they_have_the_size_of_the_bound(one, ten, sample
 
     Its standard deviation is 3 % (two components or fewer a draw); second-order terms add as much.
     """
-    bound = paper.figure3_bound(samples=samples, likelihood=likelihood)
+    bound = paper.error_map_bound(samples=samples, likelihood=likelihood)
     error = (one if samples == 1 else ten).position
     fine = bound < 0.01
     assert fine.sum() > 250
@@ -112,7 +112,7 @@ def test_the_bound_is_that_of_the_array_and_four_unknowns(published):
     i, j = 30, 7
     x = [published.x[i], published.y[j], 0, *published.velocity]
     P = crlb(x, RadarArray.linear(5, 0.4), 0.1, 10, 0.001, "constant_velocity", free=PLANE)
-    bound = paper.figure3_bound(samples=10, likelihood="constant_velocity")
+    bound = paper.error_map_bound(samples=10, likelihood="constant_velocity")
     assert bound[i, j] == pytest.approx(np.sqrt(P[0, 0] + P[1, 1]), rel=1e-12)
 
 
@@ -121,12 +121,12 @@ def test_opposite_v_x_turns_the_map_upside_down(one, published):
     reflected = published.velocity * [-1, 1, 1]
     for likelihood, samples in (("stationary", 1), ("constant_velocity", 10)):
         settings = {"samples": samples, "likelihood": likelihood}
-        bound = paper.figure3_bound(**settings)
-        mirrored = paper.figure3_bound(**settings, velocity=reflected)[::-1]
+        bound = paper.error_map_bound(**settings)
+        mirrored = paper.error_map_bound(**settings, velocity=reflected)[::-1]
         off_line = np.abs(published.x) > 1e-9
         # Some matrices are nearly singular: their inverse keeps five digits.
         assert_allclose(mirrored[off_line], bound[off_line], rtol=1e-4)
-    other = paper.figure3(DRAWS, rng=np.random.default_rng(33), velocity=reflected)
+    other = paper.error_map(DRAWS, rng=np.random.default_rng(33), velocity=reflected)
     shares = [
         np.nanmean(error > 0.1)
         for error in (one.position[20:], other.position[:19], other.position[20:])
@@ -136,7 +136,7 @@ def test_opposite_v_x_turns_the_map_upside_down(one, published):
 
 
 def test_ten_samples_of_a_constant_are_worth_the_root_of_ten():
-    one, ten = (paper.figure3_bound(samples=k, likelihood="stationary") for k in (1, 10))
+    one, ten = (paper.error_map_bound(samples=k, likelihood="stationary") for k in (1, 10))
     finite = np.isfinite(one)
     # Some matrices are nearly singular: their inverse keeps five digits.
     assert_allclose(ten[finite], one[finite] / np.sqrt(10), rtol=1e-4)
@@ -144,7 +144,7 @@ def test_ten_samples_of_a_constant_are_worth_the_root_of_ten():
 
 def test_nothing_is_seen_of_the_distance_along_the_line_of_the_sensors():
     """On it all lines of sight are parallel. Off it, the bound is finite."""
-    bound = paper.figure3_bound()
+    bound = paper.error_map_bound()
     line, rest = bound[39 // 2], np.delete(bound, 39 // 2, axis=0)
     assert np.isinf(line[~np.isnan(line)]).all()
     assert np.isfinite(rest).all()
@@ -152,22 +152,22 @@ def test_nothing_is_seen_of_the_distance_along_the_line_of_the_sensors():
 
 def test_moving_samples_help_everywhere():
     one, ten = (
-        paper.figure3_bound(),
-        paper.figure3_bound(samples=10, likelihood="constant_velocity"),
+        paper.error_map_bound(),
+        paper.error_map_bound(samples=10, likelihood="constant_velocity"),
     )
     finite = np.isfinite(one)
     assert (ten[finite] < one[finite]).all()
 
 
 def test_estimates_stay_in_the_room():
-    small = paper.figure3(1, rng=np.random.default_rng(34), room=1.0)
+    small = paper.error_map(1, rng=np.random.default_rng(34), room=1.0)
     assert np.nanmax(small.position) < np.hypot(1, 2)  # from one end of the half square to another
 
 
 def test_a_share_is_counted_over_the_places_that_count():
     error = np.array([[0.1, 0.3], [np.nan, 9.0]])
     where = np.array([[True, True], [True, False]])
-    assert_allclose(paper.shares_above(error, [0.05, 0.2, 1], where), [2 / 3, 1 / 3, 0])
+    assert_allclose(paper.fraction_above(error, [0.05, 0.2, 1], where), [2 / 3, 1 / 3, 0])
 
 
 def test_places_can_be_compared_unless_hidden_or_on_a_sensor_either_way(published):
@@ -182,7 +182,7 @@ def test_places_can_be_compared_unless_hidden_or_on_a_sensor_either_way(publishe
 
 
 def test_a_draw_does_not_depend_on_how_many_follow_it(one):
-    first = paper.figure3(2, rng=np.random.default_rng(31))
+    first = paper.error_map(2, rng=np.random.default_rng(31))
     assert_array_equal(first.position, one.position[..., :2])
 
 
@@ -201,4 +201,4 @@ def test_a_draw_does_not_depend_on_how_many_follow_it(one):
 def test_what_makes_no_map_is_refused(argument, value, match):
     arguments = {"draws": 1, "rng": np.random.default_rng(1)} | {argument: value}
     with pytest.raises(ValueError, match=match):
-        paper.figure3(**arguments)
+        paper.error_map(**arguments)

@@ -16,7 +16,7 @@ from dopplerlib.systems import mittermaier2016 as paper
 
 FALSE_ALARM = 1e-6
 RUNS = 160
-SCENARIO = paper.scenario()
+SCENARIO = paper.reported().scenario
 
 
 @pytest.fixture(scope="module")

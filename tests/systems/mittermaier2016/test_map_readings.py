@@ -15,19 +15,19 @@ PLANE = np.array([True, True, False, True, True, False])
 
 @pytest.fixture(scope="module")
 def published():
-    return paper.published_figure3()
+    return paper.reported().figure3
 
 
 @pytest.fixture(scope="module", params=(41, 42))
 def left(request):
-    return {"one sample": paper.figure3(DRAWS, rng=np.random.default_rng(request.param))}
+    return {"one sample": paper.error_map(DRAWS, rng=np.random.default_rng(request.param))}
 
 
 @pytest.fixture(scope="module")
 def right():
     rng = np.random.default_rng(43)
     return {
-        name: paper.figure3(6, rng=rng, samples=10, likelihood=name)
+        name: paper.error_map(6, rng=rng, samples=10, likelihood=name)
         for name in ("stationary", "constant_velocity")
     }
 
@@ -45,7 +45,7 @@ def test_an_orientation_is_the_map_of_that_array_and_velocity(
     published, orientation, axis, velocity
 ):
     """Computed anew for an array along x, where the library turns the map of one along y."""
-    bound = paper.figure3_bound(
+    bound = paper.error_map_bound(
         samples=10, likelihood="constant_velocity"
     )  # that of one is symmetric
     seen = paper.ORIENTATIONS[orientation](bound)
@@ -67,7 +67,7 @@ def test_a_score_is_the_logarithm_of_a_distribution(published):
     for value in (None, *values):
         maps, below = np.full((2, 39, 39), 1.0), np.zeros((2, 39, 39), bool)
         maps[0][place], below[0][place] = (np.nan, True) if value is None else (value, False)
-        score = paper.figure3_score(error, replace(published, error=maps, below=below), 0)[place]
+        score = paper.map_score(error, replace(published, error=maps, below=below), 0)[place]
         density.append(np.exp(score))
     total = density[0] + step * np.sum(density[1:])
     # Sums at the middle of steps much smaller than the kernel.
@@ -76,7 +76,7 @@ def test_a_score_is_the_logarithm_of_a_distribution(published):
 
 def test_the_lines_on_which_sensors_may_stand_are_left_out(published, left):
     (ours,) = left.values()
-    score = paper.figure3_score(ours.position, published, 0)
+    score = paper.map_score(ours.position, published, 0)
     hidden = np.isnan(published.error[0]) & ~published.below[0]
     hidden[19] = hidden[:, 19] = True
     assert_array_equal(np.isnan(score), hidden)
@@ -86,12 +86,12 @@ def test_the_lines_on_which_sensors_may_stand_are_left_out(published, left):
 @pytest.mark.parametrize("orientation", list(paper.ORIENTATIONS))
 def test_a_map_that_we_draw_ourselves_is_recognized(published, left, orientation, quantity):
     """By five deviations. State and velocity are told apart less well: mostly they are one."""
-    source = paper.figure3(1, rng=np.random.default_rng(45))
+    source = paper.error_map(1, rng=np.random.default_rng(45))
     drawn = paper.ORIENTATIONS[orientation](getattr(source, quantity))[..., 0]
     below = drawn < published.lowest
     known = np.where(below, np.nan, drawn)
     own = replace(published, error=np.stack([known] * 2), below=np.stack([below] * 2))
-    best, *others = paper.figure3_readings(left, own, 0)
+    best, *others = paper.map_readings(left, own, 0)
     assert best.orientation == orientation
     assert best.behind == best.deviation == 0
     assert (best.quantity == "position") == (quantity == "position")
@@ -103,7 +103,7 @@ def test_a_map_that_we_draw_ourselves_is_recognized(published, left, orientation
 @pytest.mark.parametrize("width", [0.1, 0.15, 0.25])
 def test_the_left_map_is_one_of_position_errors_turned_by_a_quarter(published, left, width):
     """For two seeds and three kernels: every other reading is over two deviations worse."""
-    best, *others = paper.figure3_readings(left, published, 0, width=width)
+    best, *others = paper.map_readings(left, published, 0, width=width)
     assert (best.orientation, best.quantity) == ("all turned", "position")
     assert all(other.behind > 2 * other.deviation > 0 for other in others)
     printed = next(o for o in others if (o.orientation, o.quantity) == ("as printed", "position"))
@@ -114,7 +114,7 @@ def test_the_left_map_is_one_of_position_errors_turned_by_a_quarter(published, l
 def test_the_right_map_is_turned_too_and_its_estimator_knew_that_the_target_moves(
     published, right, width
 ):
-    readings = paper.figure3_readings(right, published, 1, width=width)
+    readings = paper.map_readings(right, published, 1, width=width)
     best = readings[0]
     assert (best.orientation, best.label) == ("all turned", "constant_velocity")
     for other in readings:
@@ -131,7 +131,7 @@ def test_the_bad_corners_are_those_of_the_turned_velocity(published, left):
     def excess(error):
         """Share of errors above 0.2 m at the top right and bottom left, less the others."""
         there, elsewhere = (
-            paper.shares_above(error, [0.2], far & (sign * x * y > 0)).mean() for sign in (1, -1)
+            paper.fraction_above(error, [0.2], far & (sign * x * y > 0)).mean() for sign in (1, -1)
         )
         return there - elsewhere
 
@@ -151,18 +151,18 @@ def test_neither_position_nor_state_gives_the_shares_of_the_right_map(published,
     )
     known = paper.comparable(published, 1)
     assert not np.isnan(position[known]).any()
-    theirs = paper.shares_above(published.error[1], [0.05, 0.2], known)
-    assert paper.shares_above(position, [0.05], known).max() < theirs[0]
-    assert paper.shares_above(state, [0.2], known).min() > theirs[1]
+    theirs = paper.fraction_above(published.error[1], [0.05, 0.2], known)
+    assert paper.fraction_above(position, [0.05], known).max() < theirs[0]
+    assert paper.fraction_above(state, [0.2], known).min() > theirs[1]
 
 
 def test_what_cannot_be_compared_is_refused(published, left):
     (ours,) = left.values()
-    fewer = paper.figure3(2, rng=np.random.default_rng(46))
+    fewer = paper.error_map(2, rng=np.random.default_rng(46))
     with pytest.raises(ValueError, match="maps must have the same number of draws"):
-        paper.figure3_readings({"a": ours, "b": fewer}, published, 0)
+        paper.map_readings({"a": ours, "b": fewer}, published, 0)
     with pytest.raises(ValueError, match="error must have shape"):
-        paper.figure3_score(ours.position[1:], published, 0)
+        paper.map_score(ours.position[1:], published, 0)
 
 
 def test_turning_twice_is_half_a_turn():

@@ -10,14 +10,14 @@ from scipy.stats import multivariate_normal
 from dopplerlib._data import read_json, results
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems.mittermaier2016.noise_sweep import grid_points, mean_norm
-from dopplerlib.systems.mittermaier2016.sweep_readings import Structure
+from dopplerlib.systems.mittermaier2016.readings.noise_sweep import DotsStructure
 
 COARSE = paper.SweepReading(spacing=0.1)
 
 
 def run(levels, draws=20, *, seed=7, **change):
     reading = replace(COARSE, **change)
-    return paper.figure4(levels, draws, rng=np.random.default_rng(seed), reading=reading)
+    return paper.run_noise_sweep(levels, draws, rng=np.random.default_rng(seed), reading=reading)
 
 
 def test_the_grid_is_that_of_the_text():
@@ -27,7 +27,7 @@ def test_the_grid_is_that_of_the_text():
 
 
 def test_the_figure_has_31_levels_of_20_dots_and_passes_one_of_its_limits():
-    dots = paper.published_figure4()
+    dots = paper.reported().figure4
     assert paper.error_limits() == (0.3, 0.2)
     np.testing.assert_allclose(
         dots.variance, paper.noise_levels(), rtol=1e-4
@@ -41,7 +41,7 @@ def test_fewer_levels_draws_and_workers_give_the_same_numbers():
     many, few = run([3, 20, 29], draws=4), run([29, 3], draws=2)
     np.testing.assert_array_equal(few.position, many.position[[2, 0], :2])
     np.testing.assert_array_equal(few.median_velocity, many.median_velocity[[2, 0], :2])
-    one = paper.figure4([3], 2, rng=np.random.default_rng(7), reading=COARSE, workers=1)
+    one = paper.run_noise_sweep([3], 2, rng=np.random.default_rng(7), reading=COARSE, workers=1)
     np.testing.assert_array_equal(one.velocity, few.velocity[1:])
 
 
@@ -72,7 +72,7 @@ def test_twice_the_speed_halves_the_bound_of_the_position_and_leaves_that_of_the
 
 @pytest.mark.parametrize("seed", [7, 8])
 def test_an_array_along_x_cannot_make_the_published_dots(seed):
-    dots = paper.published_figure4().position[15]
+    dots = paper.reported().figure4.position[15]
     static, moving = (
         run([15], 12, seed=seed, axis="x", likelihood=name).position[0]
         for name in ("stationary", "constant_velocity")
@@ -99,27 +99,31 @@ def test_every_reading_stays_in_its_box_and_approaches(velocity, axis):
 
 def test_progress_goes_to_standard_error_and_only_if_it_is_wanted(capsys):
     rng = np.random.default_rng(1)
-    paper.figure4([30, 29], 1, rng=rng, reading=COARSE, progress=True)
+    paper.run_noise_sweep([30, 29], 1, rng=rng, reading=COARSE, progress=True)
     out, err = capsys.readouterr()
     assert out == ""
     shown = re.findall(r"\r(\S+ \S+) \[([#.]+)\] +(\d+)% +(\d+ s left)? *", err)
     assert "".join(f"{percent}," for _, _, percent, _ in shown) == "0,50,100,"
     assert [bar.count("#") / len(bar) for _, bar, _, _ in shown] == [0, 0.5, 1]
     assert [bool(left) for *_, left in shown] == [False, True, False]
-    paper.figure4([30], 1, rng=rng, reading=COARSE)
+    paper.run_noise_sweep([30], 1, rng=rng, reading=COARSE)
     assert capsys.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [({"levels": [31]}, "levels"), ({"draws": 0}, "draws"), ({"rng": 1}, "rng"),
-     ({"reading": replace(COARSE, velocity="away")}, "velocity"),
-     ({"reading": replace(COARSE, box="none")}, "box")],
-)  # fmt: skip
+    [({"levels": [31]}, "levels"), ({"draws": 0}, "draws"), ({"rng": 1}, "rng")],
+)
 def test_wrong_arguments_are_named(change, message):
     arguments = {"levels": [30], "draws": 1, "rng": np.random.default_rng(1)} | change
     with pytest.raises(ValueError, match=message):
-        paper.figure4(**arguments)
+        paper.run_noise_sweep(**arguments)
+
+
+def test_a_reading_that_is_none_is_refused():
+    for field in ("velocity", "likelihood", "box", "axis"):
+        with pytest.raises(ValueError, match=f"^{field} must be one of"):
+            replace(COARSE, **{field: "none"})
 
 
 def synthetic(rng, between, within, draws=2000, levels=4):
@@ -137,14 +141,14 @@ def test_the_structure_of_made_up_dots_is_found():
 
 
 def test_the_likelihood_is_that_of_independent_normal_sequences():
-    model = Structure(
+    model = DotsStructure(
         np.log([[0.1, 0.2], [0.3, 0.4], [0.5, 0.6]]),
         np.array([[0.02, 0.01], [0.01, 0.03]]),
         np.array([[0.05, -0.01], [-0.01, 0.04]]),
     )
     dots = 0.1 * synthetic(np.random.default_rng(3), model.between, model.within, 5, 3)
     S = np.block([[model.between + (i == j) * model.within for j in range(3)] for i in range(3)])
-    step = paper.figure4_settings()["drawing"]["step"]
+    step = paper.reported().figure4_study.drawing.step
     S = S + np.diag(step**2 / 12 / np.exp(2 * model.mean.ravel()))
     expected = sum(
         multivariate_normal.logpdf(np.log(dots[:, :, d].T).ravel(), model.mean.ravel(), S)
@@ -154,7 +158,7 @@ def test_the_likelihood_is_that_of_independent_normal_sequences():
 
 
 def test_the_error_of_our_own_mean_is_shared_by_all_sequences():
-    model = Structure(
+    model = DotsStructure(
         np.log([[0.1, 0.2], [0.3, 0.4], [0.5, 0.6]]),
         np.array([[0.02, 0.01], [0.01, 0.03]]),
         np.array([[0.05, -0.01], [-0.01, 0.04]]),
@@ -162,7 +166,7 @@ def test_the_error_of_our_own_mean_is_shared_by_all_sequences():
     )
     dots = 0.1 * synthetic(np.random.default_rng(3), model.between, model.within, 5, 3)
     S = np.block([[model.between + (i == j) * model.within for j in range(3)] for i in range(3)])
-    step = paper.figure4_settings()["drawing"]["step"]
+    step = paper.reported().figure4_study.drawing.step
     rounding = np.diag(step**2 / 12 / np.exp(2 * model.mean.ravel()))
     # One big Gaussian of all dots: S of its own for each sequence, S / 7 of the mean in common.
     joint = np.kron(np.eye(5), S + rounding) + np.kron(np.ones((5, 5)), S / 7)
@@ -182,14 +186,14 @@ def test_of_two_readings_the_one_that_made_the_dots_scores_higher():
     position, velocity = np.full((2, 31, 20), np.nan)
     position[levels], velocity[levels] = truth.position, truth.velocity
     dots = paper.PublishedFigure4(paper.noise_levels(), position, velocity)
-    scores = [paper.figure4_score(r, dots, rng=np.random.default_rng(4)) for r in (again, other)]
+    scores = [paper.sweep_score(r, dots, rng=np.random.default_rng(4)) for r in (again, other)]
     assert scores[0][1] > scores[1][2]  # the intervals do not touch
 
 
 def test_the_saved_study_is_what_the_seed_gives():
     levels = [4, 27]
-    again = paper.figure4(levels, 2, rng=np.random.default_rng(4))
-    saved = paper.saved_figure4()
+    again = paper.run_noise_sweep(levels, 2, rng=np.random.default_rng(4))
+    saved = paper.saved_noise_sweep()
     for name in vars(saved):
         part = getattr(saved, name)[levels]
         # Saved to six digits.
@@ -199,22 +203,22 @@ def test_the_saved_study_is_what_the_seed_gives():
 
 
 def test_the_saved_scores_are_those_of_all_readings_and_what_the_seed_gives():
-    scored = paper.figure4_readings()
+    scored = paper.saved_sweep_readings()
     assert {row[0] for row in scored} == set(paper.sweep_readings())
     assert all(low <= high for _, _, low, high in scored)
     stored = read_json("noise_sweep_readings.json", folder=results)
     assert stored["levels"] == list(paper.scored_levels())
     reading = paper.sweep_readings()[1]  # a static one: the search is several times faster
     assert reading.likelihood == "stationary"
-    again = paper.figure4(
+    again = paper.run_noise_sweep(
         paper.scored_levels(),
         stored["draws"],
         rng=np.random.default_rng(stored["seed"]),
         reading=reading,
         bound=False,
     )
-    value, low, high = paper.figure4_score(
-        again, paper.published_figure4(), rng=np.random.default_rng(stored["seed"])
+    value, low, high = paper.sweep_score(
+        again, paper.reported().figure4, rng=np.random.default_rng(stored["seed"])
     )
     saved = next(row[1:] for row in scored if row[0] == reading)
     # Saved to 0.1; the last bits of another processor do not reach that.

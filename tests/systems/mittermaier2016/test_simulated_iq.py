@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from dopplerlib._data import results
+from dopplerlib.chain.simulation import MODULE_FAULTS
 from dopplerlib.systems import mittermaier2016 as paper
 
 RESULTS = results()
@@ -42,7 +43,7 @@ def test_another_seed_gives_another_recording(monkeypatch, tmp_path):
 
 
 def test_the_readme_tells_the_settings():
-    told = paper.SIMULATED | paper.FAULTS
+    told = paper.SIMULATED | MODULE_FAULTS
     for pattern, key in [
         (r"\| seed \| (\d+),", "seed"),
         (r"\| (?:\d+) for each channel at (\d) kHz", "kHz"),
@@ -55,7 +56,7 @@ def test_the_readme_tells_the_settings():
         assert number == (told["fs"] / 1e3 if key == "kHz" else told[key]), key
     assert (
         complex(re.search(r"constant of ([\d.]+ \+ [\d.]+j)", README).group(1).replace(" ", ""))
-        == paper.FAULTS["dc"]
+        == MODULE_FAULTS["dc"]
     )
 
 
@@ -64,8 +65,8 @@ def test_its_noise_and_its_constant_are_as_told():
     iq, _, _ = paper.read_simulated_iq()
     level = paper.SIMULATED["amplitude"]
     mean = iq.x[0].mean(axis=-1)
-    dc = paper.FAULTS["dc"]
-    g, phi = 10 ** (paper.FAULTS["gain_db"] / 20), np.deg2rad(paper.FAULTS["phase_deg"])
+    dc = MODULE_FAULTS["dc"]
+    g, phi = 10 ** (MODULE_FAULTS["gain_db"] / 20), np.deg2rad(MODULE_FAULTS["phase_deg"])
     expected = level * (dc.real + 1j * g * (dc.imag * np.cos(phi) + dc.real * np.sin(phi)))
     # an echo of some hundred turns has a mean of less than a hundredth of its amplitude
     np.testing.assert_allclose(mean, expected, atol=0.02 * level)
@@ -74,7 +75,7 @@ def test_its_noise_and_its_constant_are_as_told():
 
 
 def test_the_truth_is_the_track_of_table_2():
-    s = paper.scenario()
+    s = paper.reported().scenario
     _, time, truth = paper.read_simulated_iq()
     assert time[0] == 0 and time[-1] == s.time[-1]
     picked = np.round(time / s.T).astype(int)

@@ -21,12 +21,12 @@ def starts(request):
 
 
 def chi_square(z, path):
-    s = paper.scenario()
+    s = paper.reported().scenario
     return np.sum((z - doppler_shift(path, s.array)) ** 2, axis=(-2, -1)) / s.sigma_f**2
 
 
 def test_a_record_is_ten_samples_of_the_example(starts):
-    s = paper.scenario()
+    s = paper.reported().scenario
     _, z = simulate(s, 3, rng=np.random.default_rng(51))
     own = paper.table2_starts(3, rng=np.random.default_rng(51))
     path = np.repeat(own.start.x[:, None], 10, axis=1)
@@ -38,13 +38,13 @@ def test_a_record_is_ten_samples_of_the_example(starts):
 @pytest.mark.parametrize("likelihood", LIKELIHOODS)
 def test_the_errors_are_those_of_the_estimates(starts, likelihood):
     found = starts[likelihood]
-    error = found.start.x - paper.table2().x0
+    error = found.start.x - paper.reported().table2.x0
     assert_allclose(found.position**2 + found.velocity**2, np.sum(error**2, axis=1), rtol=1e-12)
 
 
 def test_the_estimates_explain_the_record_better_than_the_truth_does():
     """The truth lies in the box, so the most likely state is at least as likely."""
-    s = paper.scenario()
+    s = paper.reported().scenario
     found = paper.table2_starts(100, rng=np.random.default_rng(53))
     _, z = simulate(s, 100, rng=np.random.default_rng(53))
     gained = chi_square(z[:, :10], s.truth[:10]) - found.start.cost
@@ -55,14 +55,14 @@ def test_the_estimates_explain_the_record_better_than_the_truth_does():
 
 def test_the_printed_errors_are_smaller_than_nearly_all_of_ours(starts):
     """Of 10 000 starts 0.6 % are as good: 13 or more of 400 have a chance of 1e-6."""
-    quoted = paper.quoted()
-    share = np.mean(starts["constant_velocity"].position <= quoted["position_error_norm_m"])
+    quoted = paper.reported().quoted
+    share = np.mean(starts["constant_velocity"].position <= quoted.position_error_norm_m)
     assert share < 0.03
 
 
 def test_for_a_constant_state_the_box_decides(starts):
     """No start is identifiable, and a smaller room leaves none with so small an error."""
-    printed = paper.quoted()["position_error_norm_m"]
+    printed = paper.reported().quoted.position_error_norm_m
     assert not starts["stationary"].start.identifiable.any()
     assert np.mean(starts["stationary"].position <= printed) > 0.01
     other = paper.table2_starts(
@@ -77,11 +77,11 @@ def test_for_a_constant_state_the_box_decides(starts):
 
 @pytest.mark.parametrize("likelihood", LIKELIHOODS)
 def test_the_truth_is_no_distance_away_from_itself(likelihood):
-    assert paper.start_misfit(paper.table2().x0, likelihood=likelihood) == 0
+    assert paper.start_misfit(paper.reported().table2.x0, likelihood=likelihood) == 0
 
 
 def test_the_distance_is_that_of_the_shifts():
-    s, table = paper.scenario(), paper.table2()
+    s, table = paper.reported().scenario, paper.reported().table2
     apart = doppler_shift(table.x_ml, s.array) - doppler_shift(table.x0, s.array)
     assert np.sqrt(np.mean(apart**2)) > 1  # Hz
     expected = np.sqrt(10 * np.sum(apart**2)) / s.sigma_f
@@ -92,7 +92,7 @@ def test_the_distance_is_that_of_the_shifts():
 
 def test_the_chance_to_beat_the_truth_is_that_of_half_the_distance():
     """Twenty thousand draws against the formula: four standard errors."""
-    s, other = paper.scenario(), paper.published_figure6().start
+    s, other = paper.reported().scenario, paper.reported().figure6.start
     distance = paper.start_misfit(other)
     path = np.repeat(other[None], 10, axis=0)
     path[:, :3] += s.time[:10, None] * other[3:]
@@ -104,7 +104,7 @@ def test_the_chance_to_beat_the_truth_is_that_of_half_the_distance():
 
 
 def test_rounding_is_made_the_most_of():
-    table = paper.table2()
+    table = paper.reported().table2
     least = paper.start_misfit(table.x_ml, likelihood="stationary", rounding=0.0005)
     rng = np.random.default_rng(55)
     corners = table.x_ml + 0.0005 * rng.choice([-1, 1], (500, 6))
@@ -114,15 +114,17 @@ def test_rounding_is_made_the_most_of():
 
 @pytest.mark.parametrize("likelihood", LIKELIHOODS)
 def test_the_printed_estimate_cannot_be_the_most_likely_state_and_the_drawn_one_can(likelihood):
-    printed = paper.start_misfit(paper.table2().x_ml, likelihood=likelihood, rounding=0.0005)
-    drawn = paper.start_misfit(paper.published_figure6().start, likelihood=likelihood)
+    printed = paper.start_misfit(
+        paper.reported().table2.x_ml, likelihood=likelihood, rounding=0.0005
+    )
+    drawn = paper.start_misfit(paper.reported().figure6.start, likelihood=likelihood)
     assert norm.cdf(-printed / 2) < 1e-15
     assert norm.cdf(-drawn / 2) > 0.1
 
 
 @pytest.mark.parametrize("place", ["ring", "with a center"])
 def test_the_record_that_is_needed_is_the_shortest_one(place):
-    s, printed = paper.scenario(), paper.quoted()["position_error_norm_m"]
+    s, printed = paper.reported().scenario, paper.reported().quoted.position_error_norm_m
     extra = [[0, 0, 0]] if place == "with a center" else np.empty((0, 3))
     array = RadarArray(np.vstack([s.array.positions, extra]))
     needed = paper.samples_needed(array=array)
@@ -147,9 +149,9 @@ def test_the_same_seed_gives_the_same_bits(starts):
         (lambda: paper.table2_starts(0, rng=np.random.default_rng(1)), "runs must be a whole"),
         (lambda: paper.table2_starts(1, rng=np.random.default_rng(1), array=3), "array must be"),
         (lambda: paper.start_misfit([1.0, 2]), "x must have shape"),
-        (lambda: paper.start_misfit(np.ones((2, 6))), "x must be one state"),
+        (lambda: paper.start_misfit(np.ones((2, 6))), "x must have 1 axes"),
         (lambda: paper.start_misfit(np.ones(6), likelihood="no"), "likelihood must be one of"),
-        (lambda: paper.start_misfit(np.ones(6), rounding=-1.0), "rounding must be positive"),
+        (lambda: paper.start_misfit(np.ones(6), rounding=-1.0), "rounding must be from 0 to 1"),
         (lambda: paper.samples_needed(0.0), "error must be positive"),
         (lambda: paper.samples_needed(1e-9), "error must be within reach"),
     ],

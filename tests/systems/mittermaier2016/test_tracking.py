@@ -5,6 +5,7 @@ Expected numbers come from the files in data/, never from this one.
 
 import json
 import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -14,14 +15,13 @@ from dopplerlib import chi2_interval, doppler_shift, ekf, nis, simulate
 from dopplerlib.systems import mittermaier2016 as paper
 
 DATA = Path(__file__).resolve().parents[3] / "data" / "mittermaier2016"
-STATE = ("x", "y", "z", "vx", "vy", "vz")
 SEEDS = (1, 2, 3)
 RUNS = 16  # fewer would compile the filter a second time, for one run at a time
 
 
 @pytest.fixture(scope="module")
 def printed():
-    return json.loads((DATA / "table2.json").read_text(encoding="utf-8"))
+    return tomllib.loads((DATA / "table2.toml").read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="module")
@@ -31,62 +31,68 @@ def drawn():
 
 @pytest.fixture(scope="module")
 def published():
-    return paper.published_figure6()
+    return paper.reported().figure6
 
 
 @pytest.fixture(scope="module", params=SEEDS)
 def runs(request):
     """Return 300 runs with the printed settings, without a gate."""
-    return paper.figure6(300, rng=np.random.default_rng(request.param))
+    return paper.run_example(300, rng=np.random.default_rng(request.param))
 
 
 # What the paper prints and draws
 
 
 def test_table_2_has_its_two_columns_in_the_order_of_the_state(printed):
-    table = paper.table2()
-    assert table.x0.tolist() == [printed["true_initial_state"][name] for name in STATE]
-    assert table.x_ml.tolist() == [printed["estimated_initial_state_mle"][name] for name in STATE]
-    np.testing.assert_array_equal(table.x0, paper.scenario().x0)
+    table = paper.reported().table2
+    assert table.x0.tolist() == printed["table2"]["x0"]
+    assert table.x_ml.tolist() == printed["table2"]["x_ml"]
+    np.testing.assert_array_equal(table.x0, paper.reported().scenario.x0)
 
 
 def test_the_errors_printed_with_table_2_follow_from_its_columns_as_far_as_they_are_rounded(
     printed,
 ):
     """An entry may be off by 0.0005 in each of three components, the printed error once more."""
-    quoted, checks = paper.quoted(), printed["derived_checks"]
-    difference = paper.table2().x0 - paper.table2().x_ml
+    quoted, checks = paper.reported().quoted, printed["derived_checks"]
+    difference = paper.reported().table2.x0 - paper.reported().table2.x_ml
     rounding = 0.0005 * (np.sqrt(3) + 1)
     for part, name in [
         (slice(3), "position_error_norm_m"),
         (slice(3, 6), "velocity_error_norm_m_s"),
     ]:
         norm = np.linalg.norm(difference[part])
-        assert norm == pytest.approx(quoted[name], abs=rounding)
+        assert norm == pytest.approx(getattr(quoted, name), abs=rounding)
         assert round(norm, 4) == checks[f"{name}_from_table"]
 
 
 def test_the_initial_nees_quoted_does_not_follow_from_table_2(printed):
-    table, P0 = paper.table2(), paper.scenario().P0
+    table, P0 = paper.reported().table2, paper.reported().scenario.P0
     value = float(nis(table.x0 - table.x_ml, P0))
     assert round(value, 4) == printed["derived_checks"]["nees_from_table_with_P0_0p1I"]
-    assert value < 0.5 * paper.quoted()["initial_nees"]
-    drawn = float(nis(table.x0 - paper.published_figure6().start, P0))
+    assert value < 0.5 * paper.reported().quoted.initial_nees
+    drawn = float(nis(table.x0 - paper.reported().figure6.start, P0))
     assert round(drawn, 4) == printed["derived_checks"]["nees_with_x_hat_0p677_and_P0_0p1I"]
 
 
 def test_the_quoted_numbers_are_those_of_the_file(printed):
-    assert paper.quoted() == printed["quoted"]
+    quoted = printed["quoted"]
+    assert quoted.pop("where") == paper.reported().quoted.where
+    assert paper.reported().quoted.table.keys() == quoted.keys()
+    for name, value in quoted.items():
+        assert np.all(getattr(paper.reported().quoted, name) == value)
 
 
 def test_the_true_path_ends_where_the_paper_says_but_for_one_unit_of_the_last_digit():
     np.testing.assert_allclose(
-        paper.scenario().truth[-1, :3], paper.quoted()["final_true_position_m"], atol=1.001e-3
+        paper.reported().scenario.truth[-1, :3],
+        paper.reported().quoted.final_true_position_m,
+        atol=1.001e-3,
     )
 
 
 def test_the_published_curves_have_a_sample_every_millisecond_of_the_scenario(published):
-    s = paper.scenario()
+    s = paper.reported().scenario
     np.testing.assert_array_equal(published.time, s.time)
     assert published.error.shape == (s.samples, 3)
     assert published.nis.shape == published.skipped.shape == (s.samples,)
@@ -100,7 +106,7 @@ def test_the_published_nis_has_the_average_and_the_share_that_its_file_promises(
     assert inside.sum() == checks["nis_inside_count"]
     assert published.nis.size == checks["nis_count"]
     # The text says 0.08 and 0.1 % less: drawn and quoted numbers are not from the same run.
-    assert published.nis.mean() - paper.quoted()["nis_avg"] == pytest.approx(0.08, abs=0.005)
+    assert published.nis.mean() - paper.reported().quoted.nis_avg == pytest.approx(0.08, abs=0.005)
 
 
 def test_the_published_run_skipped_updates_at_both_ends_of_nis(published):
@@ -122,7 +128,7 @@ def test_a_skipped_update_moves_the_published_error_less_than_an_update_does(pub
 
 
 def test_the_drawn_markers_lie_where_the_error_curves_put_them(published):
-    s = paper.scenario()
+    s = paper.reported().scenario
     samples = np.rint(published.path_time / s.T).astype(int)
     assert samples[0] == 20
     assert samples[-1] == s.samples - 1
@@ -135,7 +141,7 @@ def test_the_drawn_markers_lie_where_the_error_curves_put_them(published):
 
 
 def test_the_drawn_start_is_table_2_with_another_x(published, drawn):
-    table = paper.table2().x_ml
+    table = paper.reported().table2.x_ml
     np.testing.assert_array_equal(published.start[1:], table[1:])
     marker = drawn["initial"]["x_hat_implied_by_mle_marker_m"]
     assert published.start[0] == marker["from_u"]
@@ -153,11 +159,11 @@ def test_the_first_error_completes_the_curves(published):
 
 
 def test_a_run_is_the_filter_with_the_printed_settings():
-    s = paper.scenario()
-    result = paper.figure6(RUNS, rng=np.random.default_rng(4), keep=("P", "innovation", "S"))
+    s = paper.reported().scenario
+    result = paper.run_example(RUNS, rng=np.random.default_rng(4), keep=("P", "innovation", "S"))
     truth, z = simulate(s, RUNS, rng=np.random.default_rng(4))
     # One interval back along its own velocity.
-    before = paper.table2().x_ml.copy()
+    before = paper.reported().table2.x_ml.copy()
     before[:3] -= s.T * before[3:]
     track = ekf(z, s.array, before, s.P0, s.T, s.sigma_a, s.sigma_f)
     np.testing.assert_array_equal(result.truth, truth)
@@ -169,18 +175,18 @@ def test_a_run_is_the_filter_with_the_printed_settings():
 
 def test_the_first_prediction_is_the_start_that_the_paper_prints():
     """Seen from outside: the first innovation is the measurement minus the shift of the start."""
-    s = paper.scenario()
-    result = paper.figure6(RUNS, rng=np.random.default_rng(5), keep=("innovation", "S"))
+    s = paper.reported().scenario
+    result = paper.run_example(RUNS, rng=np.random.default_rng(5), keep=("innovation", "S"))
     _, z = simulate(s, RUNS, rng=np.random.default_rng(5))
-    expected = z[:, 0] - doppler_shift(paper.table2().x_ml, s.array)
+    expected = z[:, 0] - doppler_shift(paper.reported().table2.x_ml, s.array)
     np.testing.assert_allclose(result.track.innovation[:, 0], expected, atol=1e-10)
     assert result.track.P is None
 
 
 def test_a_start_and_a_covariance_of_ones_own_are_used():
-    s = paper.scenario()
-    start = np.array([s.x0, paper.published_figure6().start] * (RUNS // 2))
-    result = paper.figure6(
+    s = paper.reported().scenario
+    start = np.array([s.x0, paper.reported().figure6.start] * (RUNS // 2))
+    result = paper.run_example(
         RUNS,
         rng=np.random.default_rng(5),
         start=start,
@@ -194,12 +200,12 @@ def test_a_start_and_a_covariance_of_ones_own_are_used():
     # a deviation. Unsure, it would be off by decimeters.
     np.testing.assert_allclose(result.track.x[:, 0], start, atol=2.5e-3)
     assert np.trace(result.track.P[0, 0]) < 1e-6
-    unsure = paper.figure6(RUNS, rng=np.random.default_rng(5))
+    unsure = paper.run_example(RUNS, rng=np.random.default_rng(5))
     assert np.trace(unsure.track.P[0, 0]) > 1e-2
 
 
 def test_the_same_seed_gives_the_same_bits():
-    first, again = (paper.figure6(RUNS, rng=np.random.default_rng(6)) for _ in range(2))
+    first, again = (paper.run_example(RUNS, rng=np.random.default_rng(6)) for _ in range(2))
     np.testing.assert_array_equal(first.track.x, again.track.x)
     np.testing.assert_array_equal(first.track.P, again.track.P)
     np.testing.assert_array_equal(first.track.nis, again.track.nis)
@@ -207,7 +213,7 @@ def test_the_same_seed_gives_the_same_bits():
 
 @pytest.mark.parametrize("gate", ["upper", "two-sided"])
 def test_a_gate_skips_exactly_what_lies_outside_its_bounds(gate):
-    result = paper.figure6(RUNS, rng=np.random.default_rng(7), gate=gate, keep=())
+    result = paper.run_example(RUNS, rng=np.random.default_rng(7), gate=gate, keep=())
     lower, upper = chi2_interval(6) if gate == "two-sided" else (0, chi2_interval(6, 1, 0.9)[1])
     value = result.track.nis
     np.testing.assert_array_equal(result.track.updated, (lower <= value) & (value <= upper))
@@ -221,7 +227,7 @@ def test_without_a_gate_every_sample_is_used(runs):
 def test_the_published_average_of_nis_is_one_that_our_runs_give(runs, published):
     """Between the 1st and the 99th percentile of 300, for each of three seeds."""
     average = runs.track.nis.mean(axis=-1)
-    for value in (published.nis.mean(), paper.quoted()["nis_avg"]):
+    for value in (published.nis.mean(), paper.reported().quoted.nis_avg):
         low, high = np.percentile(average, [1, 99])
         assert low < value < high
 
@@ -239,13 +245,13 @@ def test_most_runs_come_within_a_centimeter_in_a_second(runs):
 @pytest.mark.parametrize("bad", [np.ones(5), [1, 2, 3], np.full(6, np.nan)])
 def test_a_start_that_is_no_state_is_refused(bad):
     with pytest.raises(ValueError, match="start must"):
-        paper.figure6(RUNS, rng=np.random.default_rng(1), start=bad)
+        paper.run_example(RUNS, rng=np.random.default_rng(1), start=bad)
 
 
 def test_what_the_parts_refuse_is_refused():
     with pytest.raises(ValueError, match="runs must be a whole number"):
-        paper.figure6(0, rng=np.random.default_rng(1))
+        paper.run_example(0, rng=np.random.default_rng(1))
     with pytest.raises(ValueError, match="gate must be one of"):
-        paper.figure6(1, rng=np.random.default_rng(1), gate="lower")
+        paper.run_example(1, rng=np.random.default_rng(1), gate="lower")
     with pytest.raises(ValueError, match="P0 must be positive semidefinite"):
-        paper.figure6(1, rng=np.random.default_rng(1), P0=-np.eye(6))
+        paper.run_example(1, rng=np.random.default_rng(1), P0=-np.eye(6))

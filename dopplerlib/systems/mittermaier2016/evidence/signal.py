@@ -2,27 +2,29 @@
 
 import numpy as np
 
-from ...evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
-from ...replication.readings import Readings
-from ...signal.frequency import ml_frequency
-from ...signal.interpolation import peak_bin
-from ...signal.laws import (
+from ...._hints import checked
+from ....evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
+from ....replication.readings import Readings
+from ....signal.frequency import ml_frequency
+from ....signal.interpolation import peak_bin
+from ....signal.laws import (
     crlb_frequency_std,
     integrated_snr_for_std,
     overlap_correlation,
     window_for_std,
 )
-from ...signal.synthesis import tone
-from .published import scenario
+from ....signal.synthesis import tone
+from ..published import reported
 
 _RUNS = 4000
 _FS = 10e3  # Hz; the paper prints none. Ratios to the bound do not depend on it.
 _SNR_DB = 0.0  # where the paper says that the bound begins to be attained
 
 
-def signal_evidence(rng):
-    """Return evidence by the id of the claim, see `evidence` in the module ``claims``."""
-    s = scenario()
+@checked
+def signal_evidence(rng: np.random.Generator) -> dict[str, object]:
+    """Return evidence by the id of the claim, see `evidence`."""
+    s = reported().scenario
     snr = 10 ** (_SNR_DB / 10)
     errors = {
         f"{n} samples, {name}": (_errors(estimator, n, child), crlb_frequency_std(snr, n, _FS))

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from dopplerlib.chain.phase_fit import fit_phases
+from dopplerlib.chain.simulation import simulate_baseband
 from dopplerlib.systems import mittermaier2016 as paper
 
-S = paper.scenario()
+S = paper.reported().scenario
 RUNS = 40
 
 
@@ -20,13 +22,15 @@ def truth(moment):
 @pytest.fixture(scope="module")
 def iq():
     settings = {"fs": 2000.0, "snr_db": 27.0, "factor": 1}
-    return paper.received(RUNS, rng=np.random.default_rng(95), **settings)
+    return simulate_baseband(
+        paper.reported().scenario, RUNS, rng=np.random.default_rng(95), **settings
+    )
 
 
 def test_from_the_state_of_the_chain_it_reaches_the_bound_of_the_samples(iq):
     """Three directions of 40 errors at 0.5 s; two-sided false alarm 1e-6, 20 % for the faults."""
     found = paper.track_iq(iq).at(0.5)[0]
-    fitted = paper.fit_phases(iq, found, 0.5)
+    fitted = fit_phases(iq, found, 0.5)
     error = (fitted - truth(0.5))[:, :3]
     P = paper.position_bound_iq(0.5, 2000 * 10**2.7)
     score = np.sum(np.linalg.solve(np.linalg.cholesky(P), error.T) ** 2)
@@ -38,9 +42,9 @@ def test_from_the_state_of_the_chain_it_reaches_the_bound_of_the_samples(iq):
 def test_without_noise_and_faults_it_finds_the_truth_and_stays_there():
     """The filter of the receiver leaves 1e-4 of a turn or so; a micrometer is 3e-4 of one."""
     settings = {"fs": 2000.0, "snr_db": None, "factor": 1, "faults": False}
-    iq = paper.received(1, rng=np.random.default_rng(96), **settings)
+    iq = simulate_baseband(paper.reported().scenario, 1, rng=np.random.default_rng(96), **settings)
     start = truth(1.0) + np.array([1e-3, -1e-3, 1e-3, 1e-3, 1e-3, -1e-3])
-    once, often = (paper.fit_phases(iq, start[None], 1.0, steps)[0] for steps in (5, 8))
+    once, often = (fit_phases(iq, start[None], 1.0, steps)[0] for steps in (5, 8))
     np.testing.assert_allclose(often, once, atol=1e-6)
     # A mean of half a percent that the echo has, and that is taken for a constant, remains.
     assert np.linalg.norm((once - truth(1.0))[:3]) < 5e-5
@@ -48,6 +52,6 @@ def test_without_noise_and_faults_it_finds_the_truth_and_stays_there():
 
 def test_what_makes_no_sense_is_refused_by_name(iq):
     with pytest.raises(ValueError, match="time must leave room for three samples"):
-        paper.fit_phases(iq, np.tile(truth(0.0), (RUNS, 1)), 0.0)
+        fit_phases(iq, np.tile(truth(0.0), (RUNS, 1)), 0.0)
     with pytest.raises(ValueError, match="x must have shape"):
-        paper.fit_phases(iq, truth(0.5), 0.5)
+        fit_phases(iq, truth(0.5), 0.5)

@@ -2,23 +2,25 @@
 
 import numpy as np
 
-from ...evaluation.intervals import quantile_interval
-from ...replication.readings import Readings
-from ...signal.laws import integrated_snr_for_std
-from .chain_bounds import position_bound, position_bound_iq, record_for
-from .chain_errors import judged
-from .end_to_end import track_iq
-from .published import scenario
-from .received_iq import received
+from ...._hints import checked
+from ....chain.simulation import simulate_baseband
+from ....evaluation.intervals import quantile_interval
+from ....replication.readings import Readings
+from ....signal.laws import integrated_snr_for_std
+from ..chain_bounds import position_bound, position_bound_iq, record_length
+from ..chain_errors import track_errors
+from ..end_to_end import track_iq
+from ..published import reported
 
 _RUNS = 30
 _CN0 = 1e6  # Hz, the echo of the chapters: 20 dB in a sample at 10 kHz. The paper prints none.
 _RECORD = 0.01  # s, Table 2
 
 
-def chain_evidence(rng):
-    """Return evidence by the id of the claim, see `evidence` in the module ``claims``."""
-    s = scenario()
+@checked
+def chain_evidence(rng: np.random.Generator) -> dict[str, object]:
+    """Return evidence by the id of the claim, see `evidence`."""
+    s = reported().scenario
     # As strong as it has to be for the noise of Section 4 in a window of one sampling interval.
     strong = integrated_snr_for_std(s.sigma_f, s.T) / s.T
     bounds = {
@@ -30,25 +32,25 @@ def chain_evidence(rng):
     return _tracks(rng) | {
         "signal-constant-r": _loudness(),
         "table2-from-iq": Readings({n: float(np.trace(P) ** 0.5) for n, P in bounds.items()}),
-        "start-rapid": Readings({n: 1e3 * record_for(0.05, cn0) for n, cn0 in echoes.items()}),
+        "start-rapid": Readings({n: 1e3 * record_length(0.05, cn0) for n, cn0 in echoes.items()}),
     }
 
 
 def _loudness():
     """Return how much louder an echo as 1 / r^4 becomes, for the sensor at which it does least."""
-    s = scenario()
+    s = reported().scenario
     r = np.linalg.norm(s.truth[:, None, :3] - s.array.positions, axis=-1)
     return float(np.min((r[0] / r.min(axis=0)) ** 4))
 
 
 def _tracks(rng):
-    s = scenario()
+    s = reported().scenario
     level = 10 * np.log10(_CN0 / 2000.0)
-    iq = received(_RUNS, rng=rng, fs=2000.0, snr_db=level, factor=1)
+    iq = simulate_baseband(s, _RUNS, rng=rng, fs=2000.0, snr_db=level, factor=1)
     found, late = track_iq(iq), track_iq(iq, timestamp="end")
     end = float(s.time[-1])
     error = 100 * np.abs(found.at(end)[0][:, 0] - s.truth[-1, 0])
-    nis, nis_late = (judged(track, (end,)).nis.mean() for track in (found, late))
+    nis, nis_late = (track_errors(track, (end,)).nis.mean() for track in (found, late))
     return {
         "range-from-iq": quantile_interval(error),
         "nis-notices": float(abs(nis_late / nis - 1)),

@@ -1,16 +1,20 @@
-"""What Eq 8 assumes, noise without memory, put to a Kalman filter whose noise has one."""
+"""A Kalman filter that takes colored measurement noise for white."""
+
+from typing import Annotated
 
 import numpy as np
 
-from ... import _checks
-from ..._records import record
-from ...estimation.linear_kalman import kf
-from ...evaluation.intervals import ConfidenceInterval, mean_interval
+from .._hints import Count, Index, Positive, checked, exactly
+from .._records import record
+from .._typing import FloatArray
+from ..estimation.linear_kalman import kf
+from .intervals import ConfidenceInterval, mean_interval
 
 
+@checked
 @record
-class WalkFilter:
-    """A scalar Kalman filter over a random walk, judged after it has settled.
+class RandomWalkFilter:
+    """A scalar Kalman filter over a random walk, track_errors after it has settled.
 
     Attributes
     ----------
@@ -18,16 +22,25 @@ class WalkFilter:
         Mean of the normalized innovation squared; 1 if the filter is consistent.
     nees : ConfidenceInterval
         Mean of the normalized estimation error squared; 1 if the filter is consistent.
-    autocorrelation : list of ConfidenceInterval, length lags + 1
+    autocorrelation : tuple of ConfidenceInterval, length lags + 1
         Of the innovations, from lag 0 on; 0 beyond lag 0 if the filter is optimal.
     """
 
     nis: ConfidenceInterval
     nees: ConfidenceInterval
-    autocorrelation: list
+    autocorrelation: tuple[ConfidenceInterval, ...]
 
 
-def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
+@checked
+def random_walk_filter(
+    noise: Annotated[FloatArray, exactly(None, None)],
+    q: Positive,
+    r: Positive = 1.0,
+    *,
+    rng: np.random.Generator,
+    lags: Count = 30,
+    settle: Index = 300,
+) -> RandomWalkFilter:
     """Track a random walk through given measurement noise, which the filter believes white.
 
     Parameters
@@ -47,7 +60,7 @@ def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
 
     Returns
     -------
-    WalkFilter
+    RandomWalkFilter
 
     Raises
     ------
@@ -56,20 +69,27 @@ def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
 
     Notes
     -----
-    Mittermaier et al. (2016), Eq 8. A run gives one number to each interval, as only runs are
-    independent of each other.
+    A run gives one number to each interval, as only runs are independent of each other.
+
+    Examples
+    --------
+    Noise that is white leaves the filter consistent:
+
+    >>> rng = np.random.default_rng(1)
+    >>> white = random_walk_filter(rng.standard_normal((20, 400)), 1e-2, rng=rng, lags=2)
+    >>> white.nis.low < 1 < white.nis.high
+    True
     """
-    noise = _checks.finite("noise", noise, (None, None))
-    q, r = _checks.positive_number("q", q), _checks.positive_number("r", r)
-    _checks.generator("rng", rng)
-    lags = _checks.whole_number("lags", lags)
-    settle = _checks.whole_number("settle", settle, least=0)
+    if len(noise) < 2:
+        raise ValueError(f"noise must have two runs or more, got {len(noise)}")
     if noise.shape[-1] <= settle + lags:
         raise ValueError(
             f"noise must have more than settle + lags = {settle + lags} samples, "
             f"got {noise.shape[-1]}"
         )
     R = np.mean(noise**2)
+    if not R * q * r > 0:
+        raise ValueError(f"noise must have a power above zero, got {R}")
     walk = np.cumsum(np.sqrt(q * R) * rng.standard_normal(noise.shape), axis=-1)
     one = np.eye(1)
     track = kf((walk + noise)[..., None], one, q * R * one, one, r * R * one, np.zeros(1), R * one)
@@ -82,8 +102,8 @@ def walk_filter(noise, q, r=1.0, *, rng, lags=30, settle=300):
         for lag in range(lags + 1)
     ]
     error = track.x[..., k, 0] - walk[..., k]
-    return WalkFilter(
+    return RandomWalkFilter(
         nis=mean_interval(np.mean(track.nis[..., k], axis=-1)),
         nees=mean_interval(np.mean(error**2 / track.P[..., k, 0, 0], axis=-1)),
-        autocorrelation=[mean_interval(p / power) for p in products],
+        autocorrelation=tuple(mean_interval(p / power) for p in products),
     )

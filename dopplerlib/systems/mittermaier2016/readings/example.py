@@ -8,14 +8,14 @@ from itertools import product
 
 import numpy as np
 
-from ... import _checks
-from ..._records import record
-from ...estimation.extended_kalman import ekf
-from ...evaluation.consistency import chi2_interval
-from ...evaluation.intervals import proportion_interval
-from ...model.motion import constant_velocity
-from ...model.simulation import simulate
-from .published import published_figure6, scenario, table2
+from .... import _checks
+from ...._records import record
+from ....estimation.extended_kalman import ekf
+from ....evaluation.consistency import chi2_interval
+from ....evaluation.intervals import proportion_interval
+from ....model.motion import constant_velocity
+from ....model.simulation import simulate
+from ..published import reported
 
 # Samples over which errors are averaged: in all of them the drawn ones are known.
 WINDOWS = ((7, 14), (50, 150), (200, 300), (450, 550), (700, 800), (950, 1001))
@@ -38,7 +38,7 @@ OPTIONS = {
 
 
 @record
-class Figure6Readings:
+class ExampleReadings:
     """Runs of many readings of the simulation example, described by a few numbers.
 
     Attributes
@@ -118,7 +118,7 @@ def ruled_out(shares):
     Parameters
     ----------
     shares : dict of dict of ConfidenceInterval
-        From `Figure6Readings.shares`.
+        From `ExampleReadings.shares`.
 
     Returns
     -------
@@ -133,7 +133,7 @@ def ruled_out(shares):
     }
 
 
-def figure6_readings(runs, *, rng):
+def example_readings(runs, *, rng):
     """Run the simulation example with everything that the paper leaves open drawn at random.
 
     The gate is the two-sided one, which the figure itself shows.
@@ -148,7 +148,7 @@ def figure6_readings(runs, *, rng):
 
     Returns
     -------
-    Figure6Readings
+    ExampleReadings
 
     Raises
     ------
@@ -158,8 +158,8 @@ def figure6_readings(runs, *, rng):
     _checks.generator("rng", rng)
     groups = list(product(range(5), range(3)))
     each = _checks.whole_number("runs", runs, least=len(groups)) // len(groups)
-    s, drawn = scenario(), published_figure6()
-    starts = np.stack([table2().x_ml, drawn.start])
+    s, drawn = reported().scenario, reported().figure6
+    starts = np.stack([reported().table2.x_ml, drawn.start])
     F, _ = constant_velocity(s.T, s.sigma_a)
     option = {question: [] for question in OPTIONS}
     summary = []
@@ -174,15 +174,15 @@ def figure6_readings(runs, *, rng):
             kind.replace(" ", "_"), gate="two-sided", keep=(),
         )  # fmt: skip
         error = np.abs(track.x[..., :3] - truth[:, :3])
-        summary.append(figure6_summary(error, track.nis, ~track.updated))
+        summary.append(example_summary(error, track.nis, ~track.updated))
         for name, values in zip(OPTIONS, (start, covariance, noise, raised), strict=True):
             option[name].append(np.broadcast_to(values, each))
-    published = figure6_summary(drawn.error, drawn.nis, drawn.skipped)
+    published = example_summary(drawn.error, drawn.nis, drawn.skipped)
     chosen = {name: np.concatenate(parts) for name, parts in option.items()}
-    return Figure6Readings(chosen, np.concatenate(summary), published)
+    return ExampleReadings(chosen, np.concatenate(summary), published)
 
 
-def figure6_summary(error, nis, skipped):
+def example_summary(error, nis, skipped):
     """Describe runs by the numbers named in `SUMMARIES`.
 
     Parameters
@@ -226,7 +226,7 @@ def still_counts(error, nis):
     Parameters
     ----------
     error, nis
-        See `figure6_summary`.
+        See `example_summary`.
 
     Returns
     -------
@@ -259,7 +259,7 @@ def _covariance(name, rng):
 
 def _deviations(raised):
     """Return the standard deviation that the filter believes, shape (1001, 1)."""
-    s = scenario()
+    s = reported().scenario
     deviation = np.full((s.samples, 1), s.sigma_f)
     deviation[: (0, 10, 100)[raised]] *= np.sqrt(10)
     return deviation

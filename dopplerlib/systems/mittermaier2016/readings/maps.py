@@ -3,23 +3,23 @@
 import numpy as np
 from scipy.special import ndtr
 
-from ... import _checks
-from ..._records import record
+from .... import _checks
+from ...._records import record
 
 QUANTITIES = ("position", "state", "velocity")
 
 
-def as_printed(values):
+def _as_printed(values):
     """Return a map as it is: sensors along y, the velocity of the text."""
     return values
 
 
-def velocity_reversed(values):
+def _velocity_reversed(values):
     """Return the map for the opposite v_x: reflected upside down, as the sensors stay."""
     return values[::-1]
 
 
-def turned(values):
+def _turned(values):
     """Return the map with sensors and velocity turned by a quarter: sensors along x.
 
     From +x towards -y; the other way is the same but for the sign of the velocity, to which the
@@ -28,21 +28,21 @@ def turned(values):
     return np.swapaxes(values[::-1], 0, 1)
 
 
-def array_turned(values):
+def _array_turned(values):
     """Return the map with the sensors along x and the velocity of the text."""
-    return turned(values)[::-1]
+    return _turned(values)[::-1]
 
 
 ORIENTATIONS = {
-    "as printed": as_printed,
-    "v_x reversed": velocity_reversed,
-    "array turned": array_turned,
-    "all turned": turned,
+    "as printed": _as_printed,
+    "v_x reversed": _velocity_reversed,
+    "array turned": _array_turned,
+    "all turned": _turned,
 }
 
 
 @record
-class Reading:
+class MapReading:
     """One reading of the figure and how well it explains what is drawn.
 
     Attributes
@@ -71,7 +71,7 @@ class Reading:
         return f"{names} {0 - self.behind:6.0f} +/- {1.96 * self.deviation:.0f}"
 
 
-def figure3_score(error, published, panel, *, width=0.15, stray=0.02):
+def map_score(error, published, panel, *, width=0.15, stray=0.02):
     """Return the log-likelihood of every published value under draws of an error.
 
     Parameters
@@ -114,7 +114,7 @@ def figure3_score(error, published, panel, *, width=0.15, stray=0.02):
     return np.where(axes, np.nan, score)
 
 
-def figure3_readings(maps, published, panel, *, width=0.15):
+def map_readings(maps, published, panel, *, width=0.15):
     """Compare readings of one map of Fig 3: its orientation, its estimator, its quantity.
 
     Parameters
@@ -126,11 +126,11 @@ def figure3_readings(maps, published, panel, *, width=0.15):
     panel : int
         0 for the left map, 1 for the right one.
     width : float
-        See `figure3_score`.
+        See `map_score`.
 
     Returns
     -------
-    list of Reading
+    list of MapReading
         The best first.
 
     Raises
@@ -142,7 +142,7 @@ def figure3_readings(maps, published, panel, *, width=0.15):
     if len(numbers) != 1:
         raise ValueError(f"maps must have the same number of draws, got {sorted(numbers)}")
     scores = {
-        (orientation, label, quantity): figure3_score(
+        (orientation, label, quantity): map_score(
             turn(getattr(m, quantity)), published, panel, width=width
         )
         for orientation, turn in ORIENTATIONS.items()
@@ -153,5 +153,5 @@ def figure3_readings(maps, published, panel, *, width=0.15):
     readings = []
     for names, score in scores.items():
         loss = (best - score)[~np.isnan(score)]
-        readings.append(Reading(*names, loss.sum(), np.sqrt(loss.size) * loss.std()))
+        readings.append(MapReading(*names, loss.sum(), np.sqrt(loss.size) * loss.std()))
     return sorted(readings, key=lambda reading: reading.behind)

@@ -7,6 +7,7 @@ written down once and are not chosen.
 import numpy as np
 import pytest
 
+from dopplerlib.evaluation.colored_noise import random_walk_filter
 from dopplerlib.signal.laws import overlap_correlation_discrete
 from dopplerlib.systems import mittermaier2016 as paper
 
@@ -37,7 +38,7 @@ def test_the_overlapping_errors_have_the_correlation_of_the_law(overlapping):
 
 def test_white_noise_leaves_a_consistent_filter(white):
     """NIS: 140 000 independent values, deviation 0.4 %. NEES has a memory of 30 steps: 2 %."""
-    result = paper.walk_filter(white, 1e-3, rng=np.random.default_rng(3))
+    result = random_walk_filter(white, 1e-3, rng=np.random.default_rng(3))
     assert result.nis.value == pytest.approx(1, abs=0.02)
     assert result.nees.value == pytest.approx(1, abs=0.1)
     lags = [e.value for e in result.autocorrelation]
@@ -46,7 +47,7 @@ def test_white_noise_leaves_a_consistent_filter(white):
 
 
 def test_with_overlap_nis_is_right_while_the_error_is_twice_what_is_believed(overlapping):
-    result = paper.walk_filter(overlapping, 1e-3, rng=np.random.default_rng(4))
+    result = random_walk_filter(overlapping, 1e-3, rng=np.random.default_rng(4))
     assert result.nis.value == pytest.approx(1, abs=0.1)
     assert 1.5 < result.nees.low < result.nees.high < 2.5
     assert result.autocorrelation[1].low > 0.8
@@ -54,7 +55,7 @@ def test_with_overlap_nis_is_right_while_the_error_is_twice_what_is_believed(ove
 
 def test_lowering_r_until_nis_is_right_makes_the_covariance_worse(overlapping):
     before, after = (
-        paper.walk_filter(overlapping, 0.1, r, rng=np.random.default_rng(5)) for r in (1, 0.25)
+        random_walk_filter(overlapping, 0.1, r, rng=np.random.default_rng(5)) for r in (1, 0.25)
     )
     assert before.nis.value < 0.6
     assert after.nis.value == pytest.approx(1, abs=0.1)
@@ -63,7 +64,7 @@ def test_lowering_r_until_nis_is_right_makes_the_covariance_worse(overlapping):
 
 def test_windows_side_by_side_cure_it(overlapping):
     apart = overlapping[:, :: WINDOW // HOP]
-    result = paper.walk_filter(apart, 1e-2, rng=np.random.default_rng(6), lags=2, settle=20)
+    result = random_walk_filter(apart, 1e-2, rng=np.random.default_rng(6), lags=2, settle=20)
     # 4000 values: deviation of the mean NIS 2 %, of NEES with its memory of ten steps 8 %
     assert result.nis.value == pytest.approx(1, abs=0.1)
     assert result.nees.value == pytest.approx(1, abs=0.35)
@@ -73,17 +74,17 @@ def test_windows_side_by_side_cure_it(overlapping):
 def test_what_makes_no_sense_is_refused_by_name(white):
     rng = np.random.default_rng(7)
     with pytest.raises(ValueError, match=r"noise must have more than settle \+ lags = 330"):
-        paper.walk_filter(white[:, :330], 0.1, rng=rng)
+        random_walk_filter(white[:, :330], 0.1, rng=rng)
     with pytest.raises(ValueError, match="q must be positive, got 0"):
-        paper.walk_filter(white, 0, rng=rng)
+        random_walk_filter(white, 0, rng=rng)
     with pytest.raises(ValueError, match="r must be positive, got -1"):
-        paper.walk_filter(white, 1, -1, rng=rng)
+        random_walk_filter(white, 1, -1, rng=rng)
     with pytest.raises(ValueError, match=r"rng must be a numpy\.random\.Generator"):
-        paper.walk_filter(white, 1, rng=None)
+        random_walk_filter(white, 1, rng=None)
 
 
 def test_what_is_said_about_the_signal_chain_fits_the_scenario():
-    said, scenario = paper.signal_chain(), paper.scenario()
-    assert said["update_interval_s"] == scenario.T
-    assert scenario.sigma_f in said["sigma_f_hz"]
-    assert max(said["sigma_f_hz"]) ** 2 <= said["frequency_variance_below_hz2"]
+    said, scenario = paper.reported().signal_chain, paper.reported().scenario
+    assert said.update_interval_s == scenario.T
+    assert scenario.sigma_f in said.sigma_f_hz
+    assert max(said.sigma_f_hz) ** 2 <= said.frequency_variance_below_hz2

@@ -2,33 +2,26 @@
 
 import numpy as np
 
-from ...evaluation.bounds import crlb
-from ...evaluation.consistency import chi2_interval
-from ...model.doppler import doppler_jacobian, doppler_shift
-from ...replication.readings import Readings
-from .published import (
-    published_figure3,
-    published_figure4,
-    published_figure6,
-    quoted,
-    scenario,
-    table2,
-)
-from .start import samples_needed, start_misfit
+from ....evaluation.bounds import crlb
+from ....evaluation.consistency import chi2_interval
+from ....model.doppler import doppler_jacobian, doppler_shift
+from ....replication.readings import Readings
+from ..published import reported
+from ..start import samples_needed, start_misfit
 
 _SPEED_OF_LIGHT = 299_792_458.0  # m/s
 _CARRIER = 24e9  # Hz, Section 2
 
 
-def printed_evidence():
-    """Return evidence by the id of the claim, see `evidence` in the module ``claims``."""
+def printed_evidence() -> dict[str, object]:
+    """Return evidence by the id of the claim, see `evidence`."""
     return (
         _sensors() | _table2() | _figure4() | _figure6() | _chi_square() | _window() | _covariance()
     )
 
 
 def _sensors():
-    s = scenario()
+    s = reported().scenario
     return {
         "sensitivity": 2 * _CARRIER / _SPEED_OF_LIGHT,
         "unit-of-acceleration": -2.0,  # the power of the second
@@ -41,7 +34,7 @@ def _sensors():
 
 
 def _table2():
-    s, table, drawn = scenario(), table2(), published_figure6()
+    s, table, drawn = reported().scenario, reported().table2, reported().figure6
     error, error_drawn = table.x_ml - s.x0, drawn.start - s.x0
     return {
         "table2-position-norm": float(np.linalg.norm(error[:3])),
@@ -60,7 +53,7 @@ def _table2():
 
 
 def _figure4():
-    drawn = published_figure4()
+    drawn = reported().figure4
     return {
         "figure4-dots": float(drawn.position.shape[1]),
         "figure4-position": float(drawn.position.max()),
@@ -69,10 +62,10 @@ def _figure4():
 
 
 def _figure6():
-    drawn = published_figure6()
+    drawn = reported().figure6
     lower, upper = chi2_interval(6)
     inside = (lower <= drawn.nis) & (drawn.nis <= upper)
-    estimated = np.array(quoted()["final_estimated_position_m"])
+    estimated = np.array(reported().quoted.final_estimated_position_m)
     # What is unknown lies above the axis and before the second tenth.
     squared = np.nansum(drawn.error[1:] ** 2, axis=-1)
     tenths = np.sqrt(squared.reshape(10, -1).mean(axis=-1))
@@ -81,7 +74,8 @@ def _figure6():
         "nis-average-drawn": float(drawn.nis.mean()),
         "nis-inside-drawn": 100 * float(inside.mean()),
         "final-errors-drawn": 100 * drawn.error[-1],
-        "final-estimate-near": 100 * float(np.linalg.norm(estimated - scenario().truth[-1, :3])),
+        "final-estimate-near": 100
+        * float(np.linalg.norm(estimated - reported().scenario.truth[-1, :3])),
         "decreasing-drawn": float(np.max(tenths[1:] / tenths[:-1])),
         "z-worst-drawn": float(average[2] / max(average[:2])),
     }
@@ -103,7 +97,7 @@ def _chi_square():
 
 def _window():
     """Return how far the mean of ten samples is from the first, in standard errors of the mean."""
-    s, p = scenario(), published_figure3()
+    s, p = reported().scenario, reported().figure3
     states = np.zeros((len(p.x), len(p.y), 6))
     states[..., 0], states[..., 1] = p.x[:, None], p.y
     states[..., 3:] = p.velocity
@@ -124,7 +118,7 @@ def _drift(x, array, T, sigma_f, samples=10):
 
 def _covariance():
     """Return what the maps of Fig 3 suggest for the variance of one axis, in three ways."""
-    p = published_figure3()
+    p = reported().figure3
     error = np.where(p.below, 0.0, p.error)
     left, right = (panel[~np.isnan(panel)] ** 2 / 2 for panel in error)  # two axes, in a plane
     return {

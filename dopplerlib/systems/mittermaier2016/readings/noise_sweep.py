@@ -2,18 +2,41 @@
 
 from dataclasses import replace
 from functools import cache
+from typing import Annotated
 
 import numpy as np
 
-from ... import _checks
-from ..._data import read_json, read_lines, results
-from ..._records import record
-from .noise_sweep import Figure4, SweepReading, noise_levels
-from .published import figure4_settings
+from .... import _checks
+from ...._data import read_json, read_lines, results
+from ...._hints import Count, checked, exactly
+from ...._records import record
+from ...._typing import FloatArray
+from ..noise_sweep import NoiseSweep, SweepReading, noise_levels
+from ..published import PublishedFigure4, reported
+
+
+def _positive(name, value, shape):
+    return _checks.positive(name, _checks.moderate(name, value, shape))
+
+
+def _logarithm(name, value, shape):
+    """Return logarithms of numbers from 1e-60 to 1e60."""
+    array = _checks.finite(name, value, shape)
+    if (np.abs(array) > 140).any():
+        raise ValueError(f"{name} must hold logarithms between -140 and 140, got {array}")
+    return array
+
+
+def _sequences(name, value):
+    return value if value == np.inf else _checks.moderate_number(name, value)
+
+
+Dots = Annotated[FloatArray, exactly(None, None, check=_positive)]
+Pairs = Annotated[FloatArray, exactly(2, 2)]
 
 
 @cache
-def sweep_readings():
+def sweep_readings() -> tuple[SweepReading, ...]:
     """Return the readings of Fig 4 that are compared, and each of which is simulated.
 
     Returns
@@ -23,14 +46,14 @@ def sweep_readings():
         some of them, what else could be different: the grid of the text, other boxes, the array
         turned.
     """
-    settings = figure4_settings()
-    compared = settings["ours"]["comparison"]
+    study = reported().figure4_study
+    compared = study.ours.comparison
     velocities = [
-        SweepReading(kind, (low, high), spacing=compared["coarse"])
-        for kind, low, high in compared["velocities"]
+        SweepReading(kind, (low, high), spacing=compared.coarse)
+        for kind, low, high in compared.velocities
     ]
     some = {
-        name: [velocities[i] for i in compared[name]]
+        name: [velocities[i] for i in compared.table[name]]
         for name in ("text_grid", "more_boxes", "turned")
     }
     likelihoods = ("constant_velocity", "stationary")
@@ -38,7 +61,7 @@ def sweep_readings():
     return (
         *(replace(v, shared=s, likelihood=name) for v in velocities for s, name in both),
         *(
-            replace(v, likelihood=name, spacing=settings["grid"]["spacing"])
+            replace(v, likelihood=name, spacing=study.grid.spacing)
             for v in some["text_grid"]
             for name in likelihoods
         ),
@@ -52,18 +75,19 @@ def sweep_readings():
     )
 
 
-def scored_levels():
+def scored_levels() -> tuple[int, ...]:
     """Return the numbers of the noise levels at which readings are compared.
 
     Returns
     -------
     tuple of int
     """
-    return tuple(figure4_settings()["ours"]["comparison"]["levels"])
+    return tuple(reported().figure4_study.ours.comparison.levels.tolist())
 
 
+@checked
 @record
-class Structure:
+class DotsStructure:
     """Model of the dots: a sequence has a level of its own, and a scatter from dot to dot.
 
     Everything is for logarithms; position first, velocity second.
@@ -80,13 +104,14 @@ class Structure:
         Number of sequences that `mean` is the average of; infinite if it is exact.
     """
 
-    mean: np.ndarray
-    between: np.ndarray
-    within: np.ndarray
-    draws: float = np.inf
+    mean: Annotated[FloatArray, exactly(None, 2, check=_logarithm)]
+    between: Pairs
+    within: Pairs
+    draws: Annotated[float, _sequences] = np.inf
 
 
-def dots_structure(position, velocity):
+@checked
+def dots_structure(position: Dots, velocity: Dots) -> DotsStructure:
     """Return the model of dots that are given.
 
     Parameters
@@ -96,7 +121,7 @@ def dots_structure(position, velocity):
 
     Returns
     -------
-    Structure
+    DotsStructure
 
     Examples
     --------
@@ -107,23 +132,26 @@ def dots_structure(position, velocity):
     >>> bool(np.allclose(result.within, 0)), result.between.round(3).tolist()
     (True, [[0.24, 0.24], [0.24, 0.24]])
     """
-    dots = np.log(np.stack([position, velocity], axis=-1))
+    dots = _dots(position, velocity)
     levels, draws = dots.shape[:2]
+    if min(levels, draws) < 2:
+        raise ValueError(f"position must hold two levels of two sequences, got {levels, draws}")
     mean = dots.mean(axis=1)
     rest = dots - mean[:, None]
     kept = rest.mean(axis=0)
     change = rest - kept
     within = np.einsum("ldi,ldj->ij", change, change) / ((draws - 1) * (levels - 1))
     between = kept.T @ kept / (draws - 1) - within / levels
-    return Structure(mean, between, within, draws)
+    return DotsStructure(mean, between, within, draws)
 
 
-def dots_log_likelihood(model, position, velocity):
+@checked
+def dots_log_likelihood(model: DotsStructure, position: Dots, velocity: Dots) -> float:
     """Return how likely dots are under a model, as a sum over independent sequences.
 
     Parameters
     ----------
-    model : Structure
+    model : DotsStructure
         From a simulation.
     position, velocity : array_like, shape (L, D)
         The dots, at the levels of the model.
@@ -141,14 +169,15 @@ def dots_log_likelihood(model, position, velocity):
     to the covariance of the mean of the dots: else our own Monte Carlo error would look like a
     misfit.
     """
-    _checks.instance("model", model, Structure)
-    dots = np.log(np.stack([position, velocity], axis=-1))
+    dots = _dots(position, velocity)
     levels, draws = dots.shape[:2]
+    if len(model.mean) != levels:
+        raise ValueError(f"model must have the {levels} levels of the dots, got {len(model.mean)}")
     size, axes = np.linalg.eigh(model.between)
     between = (axes * np.maximum(size, 0)) @ axes.T
     S = np.kron(np.ones((levels, levels)), between) + np.kron(np.eye(levels), model.within)
     ours = S / model.draws
-    step = figure4_settings()["drawing"]["step"]  # of the grid of markers, in m or m/s
+    step = reported().figure4_study.drawing.step  # of the grid of markers, in m or m/s
     S = S + np.diag(step**2 / 12 / np.exp(2 * model.mean.ravel()))
     error = (dots - model.mean[:, None]).transpose(0, 2, 1).reshape(-1, draws)
     # Mean and deviations of the sequences are independent; only the mean shares our error.
@@ -159,16 +188,30 @@ def dots_log_likelihood(model, position, velocity):
     return float(-0.5 * loss)
 
 
+def _dots(position, velocity):
+    """Return the logarithms of the dots, position and velocity on the last axis."""
+    if position.shape != velocity.shape:
+        raise ValueError(f"velocity must have shape {position.shape}, got {velocity.shape}")
+    return np.log(np.stack([position, velocity], axis=-1))
+
+
 def _square(error, S):
     return np.sum(error * np.linalg.solve(S, error))
 
 
-def figure4_score(figure, published, *, rng, resamples=200):
+@checked
+def sweep_score(
+    figure: NoiseSweep,
+    published: PublishedFigure4,
+    *,
+    rng: np.random.Generator,
+    resamples: Count = 200,
+) -> tuple[float, float, float]:
     """Return how likely the published dots are under our simulation of a reading.
 
     Parameters
     ----------
-    figure : Figure4
+    figure : NoiseSweep
         Ours; many draws make the interval narrow.
     published : PublishedFigure4
         At least the levels of `figure`.
@@ -184,7 +227,6 @@ def figure4_score(figure, published, *, rng, resamples=200):
     low, high : float
         Central 95 % of the score when our sequences are drawn again from themselves.
     """
-    _checks.instance("figure", figure, Figure4)
     rows = [int(np.argmin(np.abs(noise_levels() - variance))) for variance in figure.variance]
     dots = published.position[rows], published.velocity[rows]
     draws = figure.position.shape[1]
@@ -197,7 +239,8 @@ def figure4_score(figure, published, *, rng, resamples=200):
     return one(np.arange(draws)), *(float(q) for q in np.quantile(again, (0.025, 0.975)))
 
 
-def figure4_readings(again=False):
+@checked
+def saved_sweep_readings(again: bool = False) -> list[tuple[SweepReading, float, float, float]]:
     """Return every reading with its score, the most likely first, as they are saved.
 
     Parameters
@@ -219,15 +262,15 @@ def figure4_readings(again=False):
     return sorted(rows, key=lambda row: -row[1])
 
 
-def saved_figure4():
+def saved_noise_sweep() -> NoiseSweep:
     """Return the study in full, as ``make study NAME=noise_sweep`` left it.
 
     Returns
     -------
-    Figure4
+    NoiseSweep
         All levels and points of the grid, as many draws as the figure has markers at a level.
     """
     lines = read_lines("noise_sweep.csv", folder=results)
     table, levels = np.genfromtxt(lines, delimiter=",", names=True), noise_levels()
     parts = [table[name].reshape(len(levels), -1) for name in table.dtype.names[2:]]
-    return Figure4(levels, *parts)
+    return NoiseSweep(levels, *parts)

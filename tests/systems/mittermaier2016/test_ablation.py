@@ -10,9 +10,9 @@ from scipy.stats import norm
 
 from dopplerlib import chi2_interval, doppler_shift, ekf, kf, simulate
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.causes import _missed
+from dopplerlib.systems.mittermaier2016.readings.ablation import _missed
 
-SCENARIO = paper.scenario()
+SCENARIO = paper.reported().scenario
 KEEP = [9, 100]
 
 
@@ -23,7 +23,7 @@ def records():
 
 def settings(z, start=None, P0=None):
     s = SCENARIO
-    start = paper.table2().x_ml if start is None else start
+    start = paper.reported().table2.x_ml if start is None else start
     return z, s.array, start, s.P0 if P0 is None else P0, s.T, s.sigma_a, s.sigma_f
 
 
@@ -39,7 +39,7 @@ def test_with_no_switch_moved_it_is_the_ekf_of_the_library(records, noise):
     """Over 100 samples; later rounding grows, since a wrong estimate is unstable in some runs."""
     _, z = records
     ours = ekf(*settings(z[:, :100]), noise)
-    theirs = paper.switched_ekf(*settings(z[:, :100]), noise)
+    theirs = paper.ablated_ekf(*settings(z[:, :100]), noise)
     for name, atol in [("x", 1e-8), ("P", 1e-11), ("S", 1e-6), ("nis", 1e-6), ("innovation", 1e-6)]:
         np.testing.assert_allclose(
             getattr(theirs, name), getattr(ours, name), rtol=1e-6, atol=atol, err_msg=name
@@ -51,12 +51,12 @@ def test_without_curvature_and_with_a_standing_path_it_is_the_linear_kalman_filt
     s, path = SCENARIO, np.tile(SCENARIO.x0, (50, 1))
     _, z = records
     z = z[:3, :50]
-    theirs = paper.switched_ekf(*settings(z), path=path, tangent_at="path", curvature=0.0)
-    H = np.array(paper.causes.doppler_jacobian(s.x0, s.array))
+    theirs = paper.ablated_ekf(*settings(z), path=path, tangent_at="path", curvature=0.0)
+    H = np.array(paper.readings.ablation.doppler_jacobian(s.x0, s.array))
     offset = doppler_shift(s.x0, s.array) - H @ s.x0
-    F, Q = paper.causes.constant_velocity(s.T, s.sigma_a)
+    F, Q = paper.readings.ablation.constant_velocity(s.T, s.sigma_a)
     R = s.sigma_f**2 * np.eye(6)
-    linear = kf(z - offset, F, Q, H, R, paper.table2().x_ml, s.P0)
+    linear = kf(z - offset, F, Q, H, R, paper.reported().table2.x_ml, s.P0)
     np.testing.assert_allclose(theirs.x, linear.x, rtol=1e-8, atol=1e-9)
     np.testing.assert_allclose(theirs.P[0], linear.P[0], rtol=1e-7, atol=1e-12)
     np.testing.assert_allclose(theirs.nis, linear.nis, rtol=1e-7)
@@ -68,7 +68,7 @@ def test_on_the_path_curvature_does_not_matter(records):
     z = doppler_shift(s.truth, s.array)[None, :30]
     before = s.x0 - np.r_[s.T * s.x0[3:], 0, 0, 0]
     tracks = [
-        paper.switched_ekf(*settings(z, before), path=s.truth[:30], curvature=c)
+        paper.ablated_ekf(*settings(z, before), path=s.truth[:30], curvature=c)
         for c in (0.0, 0.5, 1.0)
     ]
     for track in tracks:
@@ -79,7 +79,7 @@ def test_half_the_curvature_predicts_half_way(records):
     """The first prediction is the same in all: between the tangent of the path and the shift."""
     _, z = records
     one, half, none = (
-        paper.switched_ekf(*settings(z[:, :1]), path=SCENARIO.truth[:1], curvature=c).innovation
+        paper.ablated_ekf(*settings(z[:, :1]), path=SCENARIO.truth[:1], curvature=c).innovation
         for c in (1.0, 0.5, 0.0)
     )
     np.testing.assert_allclose(half, (one + none) / 2, rtol=1e-12, atol=1e-12)
@@ -96,7 +96,7 @@ def test_the_second_order_term_has_the_moments_of_a_sample():
     x, array = SCENARIO.x0, SCENARIO.array
     A = 0.004 * rng.normal(size=(6, 6))
     d = rng.standard_normal((200_000, 6)) @ A.T
-    tangent = doppler_shift(x, array) + d @ paper.causes.doppler_jacobian(x, array).T
+    tangent = doppler_shift(x, array) + d @ paper.readings.ablation.doppler_jacobian(x, array).T
     missed = doppler_shift(x + d, array) - tangent
     mean, covariance = _missed(x[None], (A @ A.T)[None], array)
     np.testing.assert_allclose(mean[0], missed.mean(axis=0), atol=0.03 * np.abs(mean).max())
@@ -106,21 +106,21 @@ def test_the_second_order_term_has_the_moments_of_a_sample():
 def test_the_second_order_filter_is_less_sure_and_in_a_linear_world_the_same(records):
     truth, z = records
     z = z[:, :20]
-    first = paper.switched_ekf(*settings(z))
-    second = paper.switched_ekf(*settings(z), second_order=True)
+    first = paper.ablated_ekf(*settings(z))
+    second = paper.ablated_ekf(*settings(z), second_order=True)
     assert (np.trace(second.S, axis1=-2, axis2=-1) > np.trace(first.S, axis1=-2, axis2=-1))[
         :, 0
     ].all()
-    F, Q = paper.causes.constant_velocity(SCENARIO.T, SCENARIO.sigma_a)
+    F, Q = paper.readings.ablation.constant_velocity(SCENARIO.T, SCENARIO.sigma_a)
     mean, covariance = _missed(
-        (F @ paper.table2().x_ml)[None], (F @ SCENARIO.P0 @ F.T + Q)[None], SCENARIO.array
+        (F @ paper.reported().table2.x_ml)[None], (F @ SCENARIO.P0 @ F.T + Q)[None], SCENARIO.array
     )
     np.testing.assert_allclose(first.innovation[:, 0] - second.innovation[:, 0], mean[[0] * 20])
     np.testing.assert_allclose(second.S[:, 0] - first.S[:, 0], covariance[[0] * len(second.S)])
     flat = {"path": truth[:20], "curvature": 0.0}
     np.testing.assert_array_equal(
-        paper.switched_ekf(*settings(z), **flat, second_order=True).x,
-        paper.switched_ekf(*settings(z), **flat).x,
+        paper.ablated_ekf(*settings(z), **flat, second_order=True).x,
+        paper.ablated_ekf(*settings(z), **flat).x,
     )
 
 
@@ -137,7 +137,7 @@ def test_runs_do_not_depend_on_how_they_are_chunked():
 
 def test_without_switches_the_runs_are_those_of_figure_6():
     ours = paper.consistency_runs(16, rng=np.random.default_rng(45), keep=KEEP)
-    theirs = paper.figure6(16, rng=np.random.default_rng(45))
+    theirs = paper.run_example(16, rng=np.random.default_rng(45))
     np.testing.assert_array_equal(ours.x, theirs.track.x[:, KEEP])
     np.testing.assert_array_equal(ours.nis_average, theirs.track.nis.mean(axis=-1))
     np.testing.assert_array_equal(ours.truth, theirs.truth[KEEP])
@@ -145,13 +145,11 @@ def test_without_switches_the_runs_are_those_of_figure_6():
 
 
 def test_the_matched_covariance_has_the_size_of_the_printed_errors():
-    P0, quoted = paper.matched_P0(), paper.quoted()
+    P0, quoted = paper.matched_P0(), paper.reported().quoted
     # the printed norms are rounded to a unit of the third decimal, and so are the entries
-    assert np.sqrt(np.trace(P0[:3, :3])) == pytest.approx(
-        quoted["position_error_norm_m"], abs=0.0015
-    )
+    assert np.sqrt(np.trace(P0[:3, :3])) == pytest.approx(quoted.position_error_norm_m, abs=0.0015)
     assert np.sqrt(np.trace(P0[3:, 3:])) == pytest.approx(
-        quoted["velocity_error_norm_m_s"], abs=0.0015
+        quoted.velocity_error_norm_m_s, abs=0.0015
     )
 
 
@@ -230,4 +228,4 @@ def test_two_samples_make_the_filter_sure_of_the_range_and_a_tangent_at_the_trut
 )
 def test_wrong_switches_are_named(records, options, message):
     with pytest.raises(ValueError, match=message):
-        paper.switched_ekf(*settings(records[1]), **options)
+        paper.ablated_ekf(*settings(records[1]), **options)

@@ -1,6 +1,6 @@
 """Why the filter of the paper is too sure: its causes, each with a switch.
 
-`ekf` is what the paper prints. `switched_ekf` is the same filter in plain NumPy, with the two sides
+`ekf` is what the paper prints. `ablated_ekf` is the same filter in plain NumPy, with the two sides
 of linearization apart: where the tangent is taken, and how much the world bends away from it.
 """
 
@@ -8,19 +8,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from ... import _checks
-from ..._records import record
-from ...estimation import recursion
-from ...estimation.extended_kalman import ekf
-from ...estimation.track import Track
-from ...evaluation.consistency import nees
-from ...model.doppler import doppler_jacobian, doppler_shift
-from ...model.motion import constant_velocity
-from ...model.simulation import simulate
-from .published import scenario, table2
+from .... import _checks
+from ...._records import record
+from ....estimation import recursion
+from ....estimation.extended_kalman import ekf
+from ....estimation.track import Track
+from ....evaluation.consistency import nees
+from ....model.doppler import doppler_jacobian, doppler_shift
+from ....model.motion import constant_velocity
+from ....model.simulation import simulate
+from ..published import reported
 
 
-def switched_ekf(
+def ablated_ekf(
     z,
     array,
     x0,
@@ -187,7 +187,7 @@ def consistency_runs(
     chunk : int
         Runs filtered at a time, so that memory does not grow with `runs`.
     **switches
-        `tangent_at`, `curvature`, `second_order` of `switched_ekf`, which is used if there are any;
+        `tangent_at`, `curvature`, `second_order` of `ablated_ekf`, which is used if there are any;
         its path is the truth.
 
     Returns
@@ -197,14 +197,14 @@ def consistency_runs(
     Raises
     ------
     ValueError
-        If an argument is refused by `simulate`, `ekf` or `switched_ekf`.
+        If an argument is refused by `simulate`, `ekf` or `ablated_ekf`.
     """
-    s = scenario()
+    s = reported().scenario
     if samples is not None:
         s = replace(s, samples=samples)
     runs = _checks.whole_number("runs", runs)
     keep = np.arange(s.samples) if keep is None else np.asarray(keep)
-    start = _checks.finite("start", table2().x_ml if start is None else start, (6,))
+    start = _checks.finite("start", reported().table2.x_ml if start is None else start, (6,))
     F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.broadcast_to(np.linalg.solve(F, start[..., None])[..., 0], (runs, 6))
     settings = (s.P0 if P0 is None else P0, s.T, s.sigma_a if sigma_a is None else sigma_a)
@@ -215,7 +215,7 @@ def consistency_runs(
         truth, z = simulate(s, rows.stop - first, rng=rng)
         args = (z, s.array, before[rows], *settings, sigma_f, noise)
         if switches:
-            track = switched_ekf(*args, path=truth, **switches)
+            track = ablated_ekf(*args, path=truth, **switches)
         else:
             track = ekf(*args, keep=("P",))
         average = track.nis.mean(axis=-1)
@@ -236,7 +236,7 @@ def matched_P0():
         Diagonal; the same variance for the three positions, in m^2, and for the three velocities,
         in m^2/s^2, so that the mean squares of the two errors are the printed ones.
     """
-    error = table2().x_ml - table2().x0
+    error = reported().table2.x_ml - reported().table2.x0
     variance = [np.mean(error[:3] ** 2)] * 3 + [np.mean(error[3:] ** 2)] * 3
     return np.diag(variance)
 

@@ -5,31 +5,33 @@ from itertools import product
 
 import numpy as np
 
-from ...estimation.extended_kalman import ekf
-from ...evaluation.bounds import crlb
-from ...evaluation.consistency import chi2_interval, nees, nis
-from ...evaluation.intervals import (
+from ...._hints import checked
+from ....estimation.extended_kalman import ekf
+from ....evaluation.bounds import crlb
+from ....evaluation.consistency import chi2_interval, nees, nis
+from ....evaluation.intervals import (
     ConfidenceInterval,
     mean_interval,
     proportion_interval,
     quantile_interval,
 )
-from ...model.doppler import doppler_jacobian, doppler_shift
-from ...model.motion import constant_velocity
-from ...model.radar_array import RadarArray
-from ...model.simulation import simulate
-from ...replication.readings import Draws, Readings
-from .published import published_figure6, scenario, table2
-from .start import table2_starts
-from .tracking import figure6
+from ....model.doppler import doppler_jacobian, doppler_shift
+from ....model.motion import constant_velocity
+from ....model.radar_array import RadarArray
+from ....model.simulation import simulate
+from ....replication.readings import Draws, Readings
+from ..example import run_example
+from ..published import reported
+from ..start import table2_starts
 
 _RUNS = 1200
 _SETTLED = 10  # samples; the innovations of the start are tens of times as large
 _KNOWN = 24  # sample from which on all drawn errors are known
 
 
-def tracking_evidence(rng):
-    """Return evidence by the id of the claim, see `evidence` in the module ``claims``."""
+@checked
+def tracking_evidence(rng: np.random.Generator) -> dict[str, object]:
+    """Return evidence by the id of the claim, see `evidence`."""
     runs, sizes, rotation, updates, right, covariances = rng.spawn(6)
     return (
         _readings(runs)
@@ -42,7 +44,7 @@ def tracking_evidence(rng):
 
 
 def _starts():
-    return {"start of Table 2": table2().x_ml, "start as drawn": published_figure6().start}
+    return {"start of Table 2": reported().table2.x_ml, "start as drawn": reported().figure6.start}
 
 
 def _readings(rng):
@@ -51,16 +53,16 @@ def _readings(rng):
     *children, drawn_run = rng.spawn(5)
     gates = {"no gate": None, "two-sided gate": "two-sided"}
     for child, (gate, start) in zip(children, product(gates, _starts()), strict=True):
-        result = figure6(
+        result = run_example(
             _RUNS, rng=child, gate=gates[gate], start=_starts()[start], keep=("innovation",)
         )
         for name, evidence in _of_any_run(result).items():
             found.setdefault(name, {})[f"{gate}, {start}"] = evidence
     # What is drawn was drawn with the gate and from the drawn start, says the figure itself.
-    start = published_figure6().start
+    start = reported().figure6.start
     parts = []
     for child in drawn_run.spawn(4):  # all runs at once would need a gigabyte
-        result = figure6(_RUNS, rng=child, gate="two-sided", start=start, keep=())
+        result = run_example(_RUNS, rng=child, gate="two-sided", start=start, keep=())
         parts.append(_of_the_drawn_run(result))
     drawn = {
         name: Draws(np.concatenate([part[name][0] for part in parts]), float(theirs))
@@ -95,7 +97,7 @@ def _of_any_run(result):
 
 def _of_the_drawn_run(result):
     """Return what compares with the curves of Fig 6: our numbers and the drawn one."""
-    drawn = published_figure6()
+    drawn = reported().figure6
     value, skipped = result.track.nis, ~result.track.updated
     return {
         "nis-first-ten": (value[:, :10].mean(axis=1), drawn.nis[:10].mean()),
@@ -124,7 +126,7 @@ def _least_decrease(error):
 
 def _tracked(z, array, start, P0):
     """Return the track from a start at the first sample, without a gate."""
-    s = scenario()
+    s = reported().scenario
     F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.linalg.solve(F, start[..., None])[..., 0]
     return ekf(z, array, before, P0, s.T, s.sigma_a, s.sigma_f, keep=())
@@ -132,7 +134,7 @@ def _tracked(z, array, start, P0):
 
 def _sizes(rng, runs=500):
     """Return ratios of errors of the same records filtered with two covariances of the start."""
-    s = scenario()
+    s = reported().scenario
     record, again, noise = rng.spawn(3)
     truth, z = simulate(s, runs, rng=record)
     starts = _starts() | {
@@ -159,12 +161,12 @@ def _sizes(rng, runs=500):
 
 def _rotation(rng):
     """Return ratios of errors of z, with the ring turned by half the angle between two sensors."""
-    s = scenario()
+    s = reported().scenario
     turned = replace(s, array=RadarArray.ring(6, 0.2, phase=np.pi / 6))
     errors, bounds = [], []
     for one, child in zip((turned, s), rng.spawn(2), strict=True):
         truth, z = simulate(one, 1500, rng=child)
-        track = _tracked(z, one.array, table2().x_ml, s.P0)
+        track = _tracked(z, one.array, reported().table2.x_ml, s.P0)
         errors.append(np.log(np.abs(track.x - truth)[..., 2].mean(axis=1)))
         bounds.append(
             crlb(s.x0, one.array, s.sigma_f, s.samples, s.T, "constant_velocity")[2, 2] ** 0.5
@@ -180,7 +182,7 @@ def _rotation(rng):
 
 def _noisy_covariances(share, number, rng):
     """Return 0.1 I with normal noise on the off-diagonals, as far as it is a covariance."""
-    P0 = scenario().P0
+    P0 = reported().scenario.P0
     found = []
     while len(found) < number:
         noise = np.triu(rng.standard_normal((6, 6)) * share * P0[0, 0], 1)
@@ -192,7 +194,7 @@ def _noisy_covariances(share, number, rng):
 
 def _initial_nees(rng):
     """Return the initial NEES, with noise on the off-diagonal elements of the covariance."""
-    s = scenario()
+    s = reported().scenario
     readings = {}
     for name, start in _starts().items():
         for share in (0.0, 0.1, 0.2):
@@ -205,11 +207,11 @@ def _initial_nees(rng):
 
 def _updates(rng, runs=200):
     """Return what a tangent neglects, in standard deviations of a measurement, now and later."""
-    s = scenario()
-    result = figure6(runs, rng=rng, keep=("P",))
+    s = reported().scenario
+    result = run_example(runs, rng=rng, keep=("P",))
     k = round(0.5 / s.T)
     x, P = result.track.x[:, k], result.track.P[:, k]
-    start = np.repeat(table2().x_ml[None], runs, axis=0)
+    start = np.repeat(reported().table2.x_ml[None], runs, axis=0)
     value = nees(result.track, result.truth)[:, k]
     lower, upper = chi2_interval(6)
     return {
@@ -220,7 +222,7 @@ def _updates(rng, runs=200):
 
 
 def _neglected(x, P, rng):
-    s = scenario()
+    s = reported().scenario
     normal = rng.standard_normal((len(x), 6, 40))
     away = np.swapaxes(np.linalg.cholesky(P) @ normal, -1, -2)
     tangent = away @ np.swapaxes(doppler_jacobian(x, s.array), -1, -2)
@@ -230,12 +232,12 @@ def _neglected(x, P, rng):
 
 def _right_filter(rng, runs=500):
     """Return what a filter shows that starts almost at the truth and knows how well."""
-    s = scenario()
+    s = reported().scenario
     deviation = 1e-3  # m and m/s
     child, noise = rng.spawn(2)
     start = s.x0 + deviation * child.standard_normal((runs, 6))
     P0 = deviation**2 * np.eye(6)
-    track = figure6(runs, rng=noise, start=start, P0=P0, keep=("innovation",)).track
+    track = run_example(runs, rng=noise, start=start, P0=P0, keep=("innovation",)).track
     mean = track.innovation[:, _SETTLED:].mean(axis=1)
     return {
         "innovation-zero": Draws(np.abs(mean).max(axis=1)),

@@ -7,12 +7,12 @@ test finds was put there.
 
 import numpy as np
 
-from ... import _checks
-from ...estimation import recursion
-from ...model.doppler import doppler_jacobian, doppler_shift
-from ...model.motion import constant_velocity
-from .causes import switched_ekf
-from .published import scenario
+from .... import _checks
+from ....estimation import recursion
+from ....model.doppler import doppler_jacobian, doppler_shift
+from ....model.motion import constant_velocity
+from ..published import reported
+from .ablation import ablated_ekf
 
 
 def linear_world(runs, *, rng):
@@ -40,7 +40,7 @@ def linear_world(runs, *, rng):
     """
     runs = _checks.whole_number("runs", runs)
     _checks.generator("rng", rng)
-    s = scenario()
+    s = reported().scenario
     F, _ = constant_velocity(s.T, s.sigma_a)
     pushes = s.sigma_a * rng.standard_normal((runs, s.samples, 3))
     push = np.hstack([s.T**2 / 2 * np.eye(3), s.T * np.eye(3)])
@@ -78,10 +78,10 @@ def linear_filter(z, *, noise="per_axis", sigma_f=None, sigma_a=None, P0=None, s
     Track
         With P and S of leading axis 1.
     """
-    s = scenario()
+    s = reported().scenario
     F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.linalg.solve(F, s.x0) + (0 if start is None else start)
-    return switched_ekf(
+    return ablated_ekf(
         z, s.array, before, s.P0 if P0 is None else P0, s.T, sigma_a or s.sigma_a,
         sigma_f or s.sigma_f, noise, path=s.truth, tangent_at="path", curvature=0.0,
     )  # fmt: skip
@@ -105,7 +105,7 @@ def faulty_filters(truth, z):
     F, Q : ndarray, shape (6, 6)
         Motion as the filter believes it.
     """
-    s = scenario()
+    s = reported().scenario
     biased = z + np.eye(len(s.array))[0] * s.sigma_f / 4
     late = np.concatenate([z[:, :1].repeat(10, axis=1), z[:, :-10]], axis=1)
     memory = np.empty_like(z)

@@ -1,17 +1,26 @@
 """The error maps of Section 3.4, drawn anew as often as wanted (Fig 3)."""
 
+from collections.abc import Iterable
+from typing import Annotated, Literal
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Count, Positive, checked, exactly, shaped
 from ..._records import record
+from ..._typing import BoolArray, FloatArray
 from ...estimation.maximum_likelihood import ml_initialize
 from ...evaluation.bounds import crlb
 from ...model.doppler import doppler_shift
-from .published import published_figure3
+from .published import PublishedFigure3, reported
+
+Likelihood = Literal["constant_velocity", "stationary"]
+Velocity = Annotated[FloatArray, exactly(3)]
 
 _IN_PLANE = np.array([True, True, False, True, True, False])
 
 
+@checked
 @record
 class ErrorMap:
     """Errors of maximum-likelihood starts all over the plane of Fig 3.
@@ -24,16 +33,25 @@ class ErrorMap:
         The same of the velocity in m/s.
     """
 
-    position: np.ndarray
-    velocity: np.ndarray
+    position: Annotated[FloatArray, exactly(None, None, None, check=_checks.measured)]
+    velocity: Annotated[FloatArray, exactly(None, None, None, check=_checks.measured)]
 
     @property
-    def state(self):
+    def state(self) -> FloatArray:
         """Norm of the error of the whole state, meters and meters per second added as numbers."""
         return np.hypot(self.position, self.velocity)
 
 
-def figure3(draws, *, rng, samples=1, likelihood="stationary", room=2.0, velocity=None):
+@checked
+def error_map(
+    draws: Count,
+    *,
+    rng: np.random.Generator,
+    samples: Count = 1,
+    likelihood: Likelihood = "stationary",
+    room: Positive = 2.0,
+    velocity: Velocity | None = None,
+) -> ErrorMap:
     """Estimate the state of a target at every place of Fig 3.
 
     Parameters
@@ -67,12 +85,13 @@ def figure3(draws, *, rng, samples=1, likelihood="stationary", room=2.0, velocit
     A line cannot tell a target from its reflection, so only the half of the square is searched in
     which the target is, x >= 0 for a target on the line itself; z and v_z are known to be zero. The
     speed is restricted to that of the drives, along each axis.
+
+    Examples
+    --------
+    >>> error_map(1, rng=np.random.default_rng(1)).position.shape
+    (39, 39, 1)
     """
-    draws = _checks.whole_number("draws", draws)
-    samples = _checks.whole_number("samples", samples)
-    room = _checks.positive_number("room", room)
-    _checks.generator("rng", rng)
-    p = published_figure3()
+    p = reported().figure3
     states = _states(p, velocity)
     path = np.repeat(states[:, None], samples, axis=1)
     path[..., :3] += p.T * np.arange(samples)[:, None] * path[..., 3:]
@@ -101,7 +120,10 @@ def figure3(draws, *, rng, samples=1, likelihood="stationary", room=2.0, velocit
     )
 
 
-def figure3_bound(*, samples=1, likelihood="stationary", velocity=None):
+@checked
+def error_map_bound(
+    *, samples: Count = 1, likelihood: Likelihood = "stationary", velocity: Velocity | None = None
+) -> FloatArray:
     """Return the least root mean square position error at every place of Fig 3.
 
     Parameters
@@ -114,8 +136,13 @@ def figure3_bound(*, samples=1, likelihood="stationary", velocity=None):
     ndarray, shape (39, 39)
         Cramér-Rao bound in m by x and y; infinite where the information is singular, NaN on a
         sensor.
+
+    Examples
+    --------
+    >>> error_map_bound().shape
+    (39, 39)
     """
-    p = published_figure3()
+    p = reported().figure3
     states = _states(p, velocity)
     clear = _clear(states, p.array)
     bound = np.full(len(states), np.nan)
@@ -127,8 +154,13 @@ def figure3_bound(*, samples=1, likelihood="stationary", velocity=None):
     return bound.reshape(len(p.x), len(p.y))
 
 
-def shares_above(error, limits, where):
-    """Return the share of places at which an error is above a limit.
+@checked
+def fraction_above(
+    error: Annotated[FloatArray, shaped(None, None, check=_checks.measured)],
+    limits: Iterable[float],
+    where: Annotated[BoolArray, exactly(None, None, check=_checks.booleans)],
+) -> FloatArray:
+    """Return the fraction of places at which an error is above a limit.
 
     Parameters
     ----------
@@ -137,17 +169,30 @@ def shares_above(error, limits, where):
     limits : sequence of float, length L
         In the unit of the errors.
     where : ndarray of bool, shape (A, B)
-        Places that count. All of them stand for squares of one size, so this is a share of area.
+        Places that count. They stand for squares of one size: it is a fraction of the area.
 
     Returns
     -------
     ndarray, shape (L, ...)
         A place without a number is not above anything: an error that is only known to be small.
+
+    Raises
+    ------
+    ValueError
+        If a shape does not fit, or no place or no limit is left.
+
+    Examples
+    --------
+    >>> fraction_above([[0.1, 0.3]], [0.2], [[True, True]]).tolist()
+    [0.5]
     """
+    if error.shape[:2] != where.shape or not where.any() or not limits:
+        raise ValueError(f"where must choose some of {error.shape[:2]}, got {where.shape}")
     return np.stack([(error[where] > limit).mean(axis=0) for limit in limits])
 
 
-def comparable(published, panel):
+@checked
+def comparable(published: PublishedFigure3, panel: Literal[0, 1]) -> BoolArray:
     """Return the places of Fig 3 at which an error can be compared, whichever way it is turned.
 
     Parameters
@@ -162,6 +207,11 @@ def comparable(published, panel):
     ndarray of bool, shape (39, 39)
         Where the published error is known, or known to be small, and no sensor is: neither along
         y, as printed, nor along x.
+
+    Examples
+    --------
+    >>> comparable(reported().figure3, 0).shape
+    (39, 39)
     """
     clear = _clear(_states(published, None), published.array).reshape(published.below.shape[1:])
     known = ~np.isnan(published.error[panel]) | published.below[panel]
@@ -170,8 +220,8 @@ def comparable(published, panel):
 
 def _states(p, velocity):
     """Return the target at all places, shape (39 * 39, 6); y runs fastest."""
-    v = p.velocity if velocity is None else _checks.finite("velocity", velocity, (3,))
-    if v.shape != (3,) or v[2]:
+    v = p.velocity if velocity is None else velocity
+    if v[2]:
         raise ValueError(f"velocity must be one vector in the plane z = 0, got {v.tolist()}")
     states = np.zeros((len(p.x), len(p.y), 6))
     states[..., 0], states[..., 1] = p.x[:, None], p.y

@@ -1,18 +1,23 @@
 """The simulation example of Section 4, run as often as wanted (Fig 6)."""
 
+from collections.abc import Iterable
+from typing import Annotated, Literal
+
 import numpy as np
 
-from ... import _checks
+from ..._hints import Covariance, Runs, States, checked, exactly
 from ..._records import record
+from ..._typing import FloatArray
 from ...estimation.extended_kalman import ekf
 from ...estimation.track import Track
 from ...model.motion import constant_velocity
 from ...model.simulation import simulate
-from .published import scenario, table2
+from .published import reported
 
 
+@checked
 @record
-class Figure6:
+class ExampleRuns:
     """Our runs of the simulation example.
 
     Attributes
@@ -27,13 +32,22 @@ class Figure6:
         Absolute position errors in m.
     """
 
-    time: np.ndarray
-    truth: np.ndarray
+    time: Annotated[FloatArray, exactly(None)]
+    truth: Annotated[FloatArray, exactly(None, 6)]
     track: Track
-    error: np.ndarray
+    error: Annotated[FloatArray, exactly(None, None, 3)]
 
 
-def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
+@checked
+def run_example(
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    gate: Literal["upper", "two-sided"] | None = None,
+    start: States | None = None,
+    P0: Covariance | None = None,
+    keep: Iterable[str] = ("P",),
+) -> ExampleRuns:
     """Run the simulation example of Fig 6.
 
     Parameters
@@ -53,7 +67,7 @@ def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
 
     Returns
     -------
-    Figure6
+    ExampleRuns
 
     Raises
     ------
@@ -64,9 +78,14 @@ def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
     -----
     `ekf` predicts before it updates. So that the prediction for the first sample is `start`, it
     is moved back by one sampling interval (0.75 mm).
+
+    Examples
+    --------
+    >>> run_example(1, rng=np.random.default_rng(1)).error.shape
+    (1, 1001, 3)
     """
-    s = scenario()
-    start = table2().x_ml if start is None else _checks.finite("start", start, (6,))
+    s = reported().scenario
+    start = reported().table2.x_ml if start is None else start
     F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.linalg.solve(F, start[..., None])[..., 0]
     truth, z = simulate(s, runs, rng=rng)
@@ -81,4 +100,4 @@ def figure6(runs, *, rng, gate=None, start=None, P0=None, keep=("P",)):
         gate=gate,
         keep=keep,
     )
-    return Figure6(s.time, truth, track, np.abs(track.x - truth)[..., :3])
+    return ExampleRuns(s.time, truth, track, np.abs(track.x - truth)[..., :3])

@@ -8,10 +8,10 @@ import pytest
 from dopplerlib import chi2_interval
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.figure6_readings import (
+from dopplerlib.systems.mittermaier2016.readings.example import (
     OPTIONS,
     SUMMARIES,
-    figure6_summary,
+    example_summary,
 )
 
 NEAREST = 120
@@ -19,12 +19,12 @@ NEAREST = 120
 
 @pytest.fixture(scope="module")
 def runs():
-    return paper.figure6_readings(6000, rng=np.random.default_rng(5))
+    return paper.example_readings(6000, rng=np.random.default_rng(5))
 
 
 @pytest.fixture(scope="module")
 def drawn():
-    return paper.published_figure6()
+    return paper.reported().figure6
 
 
 def test_the_published_run_is_described_by_what_is_drawn(runs, drawn):
@@ -45,8 +45,8 @@ def test_white_values_have_no_memory_and_a_walk_has_much():
     white = rng.chisquare(6, (1, 1001))
     walk = np.exp(np.cumsum(rng.standard_normal((1, 1001)), axis=1) / 10)
     # 1 / sqrt(1001) is one deviation.
-    assert abs(figure6_summary(error, white, skipped)[0, memory]) < 0.15
-    assert figure6_summary(error, walk, skipped)[0, memory] > 0.9
+    assert abs(example_summary(error, white, skipped)[0, memory]) < 0.15
+    assert example_summary(error, walk, skipped)[0, memory] > 0.9
 
 
 def test_every_answer_is_given_about_equally_often(runs):
@@ -97,7 +97,7 @@ def test_the_gate_is_seen_in_samples_that_stand_still(drawn):
     assert low > 15
     assert high > 10
     for gate in (None, "upper"):
-        ours = paper.figure6(
+        ours = paper.run_example(
             150, rng=np.random.default_rng(6), gate=gate, start=drawn.start, keep=()
         )
         assert paper.still_counts(ours.error, ours.track.nis)[0].max() < low / 2
@@ -118,6 +118,6 @@ def test_a_sample_stands_still_where_no_error_moves():
 
 def test_too_few_runs_are_refused():
     with pytest.raises(ValueError, match="runs must be"):
-        paper.figure6_readings(14, rng=np.random.default_rng(1))
+        paper.example_readings(14, rng=np.random.default_rng(1))
     with pytest.raises(ValueError, match="rng must be"):
-        paper.figure6_readings(15, rng=1)
+        paper.example_readings(15, rng=1)

@@ -2,17 +2,18 @@
 
 import numpy as np
 
-from ...evaluation.intervals import (
+from ...._hints import checked
+from ....evaluation.intervals import (
     ConfidenceInterval,
     mean_interval,
     proportion_interval,
     quantile_interval,
 )
-from ...replication.readings import Draws, Readings
-from .error_map import figure3, figure3_bound, shares_above
-from .map_readings import figure3_readings
-from .published import published_figure3
-from .start import table2_starts
+from ....replication.readings import Draws, Readings
+from ..error_maps import error_map, error_map_bound, fraction_above
+from ..published import reported
+from ..readings.maps import map_readings
+from ..start import table2_starts
 
 _DRAWS = 3  # of each of the 1521 places of Fig 3
 _REDRAWN = 500
@@ -20,26 +21,27 @@ _STARTS = 2000
 _LIKELIHOODS = ("stationary", "constant_velocity")
 
 
-def start_evidence(rng):
-    """Return evidence by the id of the claim, see `evidence` in the module ``claims``."""
+@checked
+def start_evidence(rng: np.random.Generator) -> dict[str, object]:
+    """Return evidence by the id of the claim, see `evidence`."""
     maps, starts = rng.spawn(2)
     return _maps(maps) | _bounds() | _starts(starts)
 
 
 def _maps(rng):
-    p = published_figure3()
+    p = reported().figure3
     children = rng.spawn(6)
-    one = figure3(_DRAWS, rng=children[0])
+    one = error_map(_DRAWS, rng=children[0])
     ten, twenty = (
         {
-            f"{name} likelihood": figure3(draws, rng=child, samples=samples, likelihood=name)
+            f"{name} likelihood": error_map(draws, rng=child, samples=samples, likelihood=name)
             for name, child in zip(_LIKELIHOODS, pair, strict=True)
         }
         for draws, samples, pair in ((_DRAWS, 10, children[1:3]), (1, 20, children[3:5]))
     )
     readings = {
         r.orientation: r
-        for r in figure3_readings({"one sample": one}, p, 0)
+        for r in map_readings({"one sample": one}, p, 0)
         if r.quantity == "position"
     }
     behind, error = (float(getattr(readings["as printed"], k)) for k in ("behind", "deviation"))
@@ -69,7 +71,7 @@ def _corners(error, p):
 def _share(error_map, p, panel, rng):
     """Return the share of places above 0.1 m, in maps put together from our draws of each place."""
     known = ~np.isnan(p.error[panel]) | p.below[panel]
-    published = float(shares_above(p.error[panel], [0.1], known)[0])
+    published = float(fraction_above(p.error[panel], [0.1], known)[0])
     above = error_map.position[known] > 0.1
     choice = rng.integers(above.shape[1], size=(_REDRAWN, 1, len(above)))
     drawn = np.take_along_axis(above.T[None], choice, axis=1)[:, 0].mean(axis=1)
@@ -91,7 +93,7 @@ def _ratio(longer, shorter):
 
 
 def _bounds():
-    p = published_figure3()
+    p = reported().figure3
     off_line = np.abs(p.x) > 1e-9  # on it the sensors cannot see the distance
     kinds = {
         "one sample": (1, "stationary"),
@@ -101,7 +103,7 @@ def _bounds():
     maps = {}
     for name, (samples, likelihood) in kinds.items():
         maps[name] = [
-            figure3_bound(samples=samples, likelihood=likelihood, velocity=v)[off_line]
+            error_map_bound(samples=samples, likelihood=likelihood, velocity=v)[off_line]
             for v in (p.velocity, p.velocity * [-1, 1, 1])
         ]
     bound, flipped = maps["one sample"]

@@ -1,14 +1,18 @@
 """Evidence on every claim of the paper, for the verdicts."""
 
-from ... import _checks
-from ._claims_chain import chain_evidence
-from ._claims_printed import printed_evidence
-from ._claims_signal import signal_evidence
-from ._claims_start import start_evidence
-from ._claims_tracking import tracking_evidence
+import numpy as np
+
+from ...._hints import checked
+from ...._lazy import attach
+from .chain import chain_evidence
+from .printed import printed_evidence
+from .signal import signal_evidence
+from .start import start_evidence
+from .tracking import tracking_evidence
 
 
-def evidence(*, rng):
+@checked
+def evidence(*, rng: np.random.Generator) -> dict[str, object]:
     """Return our numbers for every claim of ``data/mittermaier2016/claims.toml``.
 
     Parameters
@@ -26,7 +30,6 @@ def evidence(*, rng):
     ValueError
         If `rng` is not a generator.
     """
-    _checks.generator("rng", rng)
     start, tracking, signal, chain = rng.spawn(4)
     return (
         printed_evidence()
@@ -35,3 +38,6 @@ def evidence(*, rng):
         | tracking_evidence(tracking)
         | chain_evidence(chain)
     )
+
+
+__getattr__, __dir__ = attach(__name__, __path__)

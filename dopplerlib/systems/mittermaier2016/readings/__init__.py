@@ -1,0 +1,5 @@
+"""Interpretations of what the paper leaves open, and ablations of its filter."""
+
+from ...._lazy import attach
+
+__getattr__, __dir__ = attach(__name__, __path__)
