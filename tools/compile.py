@@ -8,6 +8,7 @@ import numpy as np
 
 from dopplerlib import RadarArray, ekf, ml_frequency, ml_initialize
 from dopplerlib.estimation._ekf_loop import LANES
+from dopplerlib.signal.validity import valid_samples
 from dopplerlib.systems import valarmathi
 from tools.command import parser, start
 
@@ -22,6 +23,7 @@ def main(argv=None):
         ekf(z, array, start, np.eye(6), 0.001, 1.0, 1.0)
     ml_initialize(z, array, 1.0, 0.001, box)
     ml_frequency(np.ones(16, complex), 1.0)
+    valid_samples(np.arange(64.0))
     rng = np.random.default_rng(1)
     table = valarmathi.window_table([0, 10], [0, 10], rng=rng, runs=1)
     valarmathi.run_algorithms("path 1", 0.0, 1, table, rng=rng)

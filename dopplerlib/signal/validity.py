@@ -7,7 +7,6 @@ import numpy as np
 from .. import _checks
 from .._typing import ArrayLike, BoolArray, ComplexArray
 
-_BLOCK = 32  # samples that show a branch's noise
 # So many samples stand still if they move less than this share of the module's noise.
 _STILL = ((16, 0.002), (32, 0.01), (128, 0.1))
 _BESIDE = 1e-3  # share for the noise of the other modules, whose gain may differ
@@ -22,6 +21,7 @@ _LOUD = 1e4  # of the noise, and of the median in the block: what is louder is n
 _ODDS = 0.8  # of the two highest codes, the share of the highest: for a pure tone it is 0.71
 LARGEST = 1e140  # amplitude, whose square is finite, and that of a sum of many
 _AT_ONCE = 2**20  # samples
+_BESIDE_LOUD = 32  # samples among which a loud one is told
 
 
 def valid_samples(
@@ -172,86 +172,88 @@ def _alive(rows, full_scale, longest_run, false_alarm):
 
     The values in `rows` are lost: of a long recording there should not be many copies.
     """
-    good = np.abs(rows) <= LARGEST  # not so if NaN
-    rows[~good] = 0.0
+    from ._validity_loops import standing, survey  # here: numba takes longer to load than the rest
+
+    shape, n = rows.shape, rows.shape[-1]
+    good = rows <= LARGEST  # not so if NaN
+    good &= rows >= -LARGEST
+    if not good.all():
+        rows[~good] = 0.0
     # Powers of two change no relation, and keep squares away from overflow.
     exponent = -int(np.frexp(max(rows.max(), -rows.min()))[1])
     np.ldexp(rows, exponent, out=rows)
-    unused = (rows == 0).all(axis=-1)
-    unused[:, :, 0] = False  # without I, or without I and Q, a module is dead
+    rows, good = rows.reshape(-1, n), good.reshape(-1, n)
+    ends, counts = np.empty((len(rows), 2, 2)), np.empty((len(rows), 2, 2))
+    step, same, longest = np.empty(len(rows)), np.empty(len(rows)), np.empty((len(rows), _LONGEST))
+    survey(rows, good, ends, counts, step, same, longest)
     if full_scale is not None:
-        stops = np.abs(rows) >= np.ldexp(full_scale, exponent)
+        stop = np.ldexp(full_scale, exponent)
+        for row in np.flatnonzero((np.abs(ends[:, :, 0]) >= stop).any(axis=1)):
+            good[row] &= np.abs(rows[row]) < stop
     else:
-        stops = _clipped(rows, good, false_alarm / 4)
-    good &= ~stops
-    moves = np.diff(rows)
-    np.abs(moves, out=moves)
-    same = moves == 0
-    step = moves.min(axis=-1, initial=np.inf, where=~same)
-    del moves
+        for row, side in np.argwhere(_clipped(counts, false_alarm / 4)):
+            good[row] &= rows[row] != (1 - 2 * side) * ends[row, side, 0]
     own = _own_noise(rows, good)
-    reach = np.ptp(rows, axis=-1) ** 2
-    for place in zip(*np.nonzero((reach > _LOUD * own) & (own > 0)), strict=True):
-        good[place] &= ~_loud(rows[place], own[place])
-    for place in zip(*np.nonzero(same.sum(axis=-1) > 1), strict=True):
-        change = np.flatnonzero(~same[place]) + 1
-        length = np.diff(change, prepend=0, append=rows.shape[-1])
-        longest = longest_run
-        if longest is None:
-            sigma = np.sqrt(own[place]) / step[place]
-            longest = _longest_natural(length, sigma, false_alarm / rows.shape[-1])
-        good[place] &= ~np.repeat(length > longest, length)
-    beside = np.sort(own, axis=1)[:, own.shape[1] // 2]
-    for block, share in _STILL:
-        limit = np.maximum(share * own, _BESIDE * beside[:, None])
+    reach = (ends[:, 0, 0] + ends[:, 1, 0]) ** 2
+    for row in np.flatnonzero((reach > _LOUD * own) & (own > 0)):
+        good[row] &= ~_loud(rows[row], own[row])
+    least = longest_run or _least_natural(n - same, longest[:, 0], own, step, false_alarm / n)
+    for row in np.flatnonzero((same > 1) & (longest[:, -1] > least)):
+        change = np.flatnonzero(np.diff(rows[row])) + 1
+        length = np.diff(change, prepend=0, append=n)
+        natural = longest_run or _longest_natural(
+            length, longest[row, 0], own[row], step[row], false_alarm / n
+        )
+        good[row] &= ~np.repeat(length > natural, length)
+    by_module = own.reshape(shape[:-1])
+    beside = np.sort(by_module, axis=1)[:, shape[1] // 2]
+    beside = np.broadcast_to(beside[:, None], by_module.shape).ravel()
+    for size, share in _STILL:
+        limit = np.maximum(share * own, _BESIDE * beside)
         # Where a step is larger than that, whatever stays in one would stand still.
         limit[limit <= step**2] = 0.0
-        first = _firsts(rows.shape[-1], block, block // 2)
-        still = _variance(rows, good, first, block) < limit[..., None]
-        for place in zip(*np.nonzero(still.any(axis=-1)), strict=True):
-            good[place] &= ~_grown(rows[place], first[still[place]], block)
-    good[unused] = True
-    return good
+        first = _firsts(n, size, size // 2)
+        still = np.empty((len(rows), len(first)), dtype=bool)
+        standing(rows, good, first, size, limit, still)
+        for row in np.flatnonzero(still.any(axis=-1)):
+            good[row] &= ~_grown(rows[row], first[still[row]], size)
+    # Without I, or without I and Q, a module is dead; without Q it is none that needs it.
+    unused = (ends[:, :, 0] == 0).all(axis=-1).reshape(shape[:-1])
+    unused[:, :, 0] = False
+    good[unused.ravel()] = True
+    return good.reshape(shape)
 
 
-def _clipped(rows, good, chance):
-    """Return which samples are at an extreme that repeats too often."""
-    at = np.zeros(rows.shape, dtype=bool)
-    for sign in (1, -1):
-        heights = np.where(good, rows, -sign * np.inf)
-        heights *= sign
-        top = heights.max(axis=-1, keepdims=True)
-        here = good & (heights == top)
-        heights[here] = -np.inf
-        second = heights.max(axis=-1, keepdims=True)
-        a, b = here.sum(axis=-1), (good & (heights == second)).sum(axis=-1)
-        total = np.maximum(a + b, 1)
-        share = a / total
-        rest = np.where(b > 0, 1 - share, 1.0)  # 0 log 0 is 0
-        # Chernoff's bound on so many of these at the top by chance.
-        excess = share * np.log(np.maximum(share, _ODDS) / _ODDS) + np.where(
-            b > 0, rest * np.log(rest / (1 - _ODDS)), 0.0
-        )
-        many = (b > 0) & (share > _ODDS) & (total * excess > -np.log(chance))
-        at |= here & many[..., None]
-        del heights, here  # before the others take as much again
-    return at
+def _clipped(counts, chance):
+    """Return which extremes repeat too often: of how many samples have each, and have the next."""
+    a, b = counts[..., 0], counts[..., 1]
+    total = np.maximum(a + b, 1)
+    share = a / total
+    rest = np.where(b > 0, 1 - share, 1.0)  # 0 log 0 is 0
+    # Chernoff's bound on so many of these at the top by chance.
+    excess = share * np.log(np.maximum(share, _ODDS) / _ODDS) + np.where(
+        b > 0, rest * np.log(rest / (1 - _ODDS)), 0.0
+    )
+    return (b > 0) & (share > _ODDS) & (total * excess > -np.log(chance))
 
 
 def _loud(row, noise):
     """Return which samples are further off than any echo beside such neighbors."""
-    block = _BLOCK
-    first = _firsts(len(row), block, block)
-    x = row[first[:, None] + np.arange(block)]
+    first = _firsts(len(row), _BESIDE_LOUD, _BESIDE_LOUD)
+    places = first[:, None] + np.arange(_BESIDE_LOUD)
+    x = row[places]
     square = (x - np.median(x, axis=-1, keepdims=True)) ** 2
     usual = np.maximum(np.median(square, axis=-1, keepdims=True), noise)
     loud = np.zeros(len(row), dtype=bool)
-    loud[(first[:, None] + np.arange(block))[square > _LOUD * usual]] = True
+    loud[places[square > _LOUD * usual]] = True
     return loud
 
 
-def _longest_natural(length, sigma, chance):
-    """Return the longest natural length of each run (R,), by those around it and the noise."""
+def _longest_natural(length, tenth, noise, step, chance):
+    """Return the longest natural length of each run (R,), by those around it and the noise.
+
+    `tenth` is the length of the tenth longest of all.
+    """
     count = min(len(length), _NEIGHBORS)
     blocks = -(-len(length) // _NEIGHBORS)
     first = np.minimum(np.arange(blocks) * _NEIGHBORS, len(length) - count)
@@ -262,12 +264,22 @@ def _longest_natural(length, sigma, chance):
     usual = np.partition(around, middle)[:, middle]
     p = ((np.sum(around > usual[:, None], axis=1) + 1) / (around.shape[1] + 1)) ** (1 / usual)
     p = np.maximum(p, np.maximum(np.roll(p, 1), np.roll(p, -1)))
-    some = np.append(length, np.ones(_CHANGES, dtype=int))
-    longest = 1 + np.partition(some, -_LONGEST)[-_LONGEST]  # one more, for chance
-    longest = longest * np.log(chance) / np.log(_LONGEST / len(some))
-    if sigma >= _COARSE:
-        longest = np.minimum(longest, np.log(chance) / np.log(np.maximum(p, 0.4 / sigma)))
-    return np.ceil(np.broadcast_to(longest, p.shape))[np.arange(len(length)) // _NEIGHBORS]
+    longest = _by_odds(p, len(length), tenth, noise, step, chance)
+    return np.ceil(longest)[np.arange(len(length)) // _NEIGHBORS]
+
+
+def _least_natural(runs, tenth, noise, step, chance):
+    """Return what `_longest_natural` gives at least to so many runs, whatever their order is."""
+    rarest = 1 / (np.minimum(runs, _NEIGHBORS) + _CHANGES + 1)
+    return _by_odds(rarest, runs, tenth, noise, step, chance)
+
+
+def _by_odds(p, runs, tenth, noise, step, chance):
+    """Return the longest natural run: samples repeat with probability p, or as in the longest."""
+    by_rank = (1 + tenth) * np.log(chance) / np.log(_LONGEST / (runs + _CHANGES))  # 1 for chance
+    sigma = np.sqrt(noise) / step
+    by_odds = np.log(chance) / np.log(np.maximum(p, 0.4 / np.maximum(sigma, _COARSE)))
+    return np.where(sigma >= _COARSE, np.minimum(by_rank, by_odds), by_rank)
 
 
 def _firsts(n, block, hop):
@@ -277,52 +289,20 @@ def _firsts(n, block, hop):
     return np.append(np.arange(0, n - block, hop), n - block)
 
 
-def _blocks(rows, good, first, block):
-    """Give blocks about their means, some at a time; NaN where a sample is no measurement."""
-    rows = np.where(good, rows, np.nan)
-    windows = np.lib.stride_tricks.sliding_window_view(rows, block, axis=-1)
-    step = max(1, _AT_ONCE // (block * rows[..., 0].size))
-    for a in range(0, len(first), step):
-        x = windows[..., first[a : a + step], :]
-        x = x - x[..., :1]
-        yield slice(a, a + step), x - x.mean(axis=-1, keepdims=True)
-
-
-def _variance(rows, good, first, block):
-    """Return the variance in each block, (..., blocks)."""
-    variance = np.empty((*rows.shape[:-1], len(first)))
-    if len(first):
-        for part, x in _blocks(rows, good, first, block):
-            variance[..., part] = np.einsum("...i,...i->...", x, x) / (block - 1)
-    return variance
-
-
 def _own_noise(rows, good):
-    """Return the variance of the noise of each branch, (...); 0 if nothing shows it."""
-    block = _BLOCK
-    first = _firsts(rows.shape[-1], block, block)
-    if not len(first):
-        return np.zeros(rows.shape[:-1])
-    noise = np.empty((*rows.shape[:-1], len(first)))
-    taper = np.hanning(block + 2)[1:-1]
-    for part, x in _blocks(rows, good, first, block):
-        # Medians of chi-square of one and of two degrees of freedom, over their means.
-        jerk = _median(np.diff(x, 4) ** 2) / (70 * 0.4549)
-        bins = np.fft.rfft(x * taper)[..., 2:-2]
-        floor = _median(bins.real**2 + bins.imag**2) / (np.log(2) * np.sum(taper**2))
-        noise[..., part] = np.minimum(jerk, floor)
-    known = noise > 0
-    count = known.sum(axis=-1, keepdims=True)
-    place = (_ALIVE * np.maximum(count - 1, 0)).astype(int)
-    ordered = np.sort(np.where(known, noise, np.inf), axis=-1)
-    return np.where(count > 0, np.take_along_axis(ordered, place, axis=-1), 0.0)[..., 0]
+    """Return the variance of the noise of each row; 0 if nothing shows it."""
+    from ._validity_loops import BLOCK, noise
 
-
-def _median(values):
-    """Return the middle one of the values, NaN if one is; of an even number the higher one."""
-    middle = values.shape[-1] // 2
-    # NaN is sorted to the end: it would not show in the middle.
-    return np.partition(values, middle)[..., middle] + 0 * values.sum(axis=-1)
+    first = _firsts(rows.shape[-1], BLOCK, BLOCK)
+    blocks = np.empty((len(rows), len(first)))
+    noise(rows, good, first, blocks)
+    own = np.zeros(len(rows))
+    for row, one in enumerate(blocks):
+        known = one[one > 0]
+        if len(known):
+            place = int(_ALIVE * (len(known) - 1))
+            own[row] = np.partition(known, place)[place]
+    return own
 
 
 def _grown(row, first, block):

@@ -6,6 +6,7 @@ Seeds were written down once and are not chosen.
 import numpy as np
 import pytest
 
+from dopplerlib.signal._validity_loops import middle_network
 from dopplerlib.signal.front_end import lowpass, lowpass_decimate
 from dopplerlib.signal.impairments import (
     branches_differ,
@@ -15,6 +16,7 @@ from dopplerlib.signal.impairments import (
 )
 from dopplerlib.signal.synthesis import complex_noise, tone
 from dopplerlib.signal.validity import valid_samples
+from tests.signal import slow_validity
 
 FS, N = 10e3, 5000
 WHERE = {
@@ -243,3 +245,48 @@ def test_a_module_without_direction_is_told_from_one_that_is_dead():
     valid = np.ones((6, 1), dtype=bool)
     valid[:3] = False
     assert branches_differ(x, valid).all()
+
+
+def spoiled(rng):
+    """Return six modules with faults of all kinds at random places, or with none."""
+    n = int(rng.choice([1, 17, 33, 200, 1500]))
+    snr_db = rng.choice([0.0, 20.0, 40.0])
+    x = tone(rng.uniform(-200, 200, 6), FS, n, snr_db, rng=rng)
+    x *= 10.0 ** rng.uniform(-3, 3, (6, 1)) if rng.random() < 0.3 else 1.0
+    if rng.random() < 0.6:
+        x = quantize(x, int(rng.integers(2, 17)), 1.5)
+    for _ in range(rng.integers(4)):
+        a, b = np.sort(rng.integers(n, size=2))
+        part = x[rng.integers(6), a : min(b, a + int(rng.choice([1, 20, 300, n]))) + 1]
+        part[:] = FAULTS[rng.choice(list(FAULTS))](part, rng)
+    if rng.random() < 0.3:
+        x = np.clip(x.real, -0.6, 0.6) + 1j * x.imag
+    if rng.random() < 0.3:
+        x[rng.integers(6), rng.integers(n)] = 10.0 ** rng.integers(7)
+    return x
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_compiled_passes_find_what_the_slow_ones_find(seed):
+    """On 100 records with faults each, at other levels of false alarms, stops and runs, too."""
+    rng = np.random.default_rng(seed)
+    with np.errstate(all="ignore"):
+        for _ in range(100):
+            x = spoiled(rng)
+            options = {
+                "full_scale": rng.choice([None, None, 0.6]),
+                "longest_run": rng.choice([None, None, 5]),
+                "false_alarm": rng.choice([1e-9, 1e-3]),
+            }
+            expected = slow_validity.valid_samples(x, **options)
+            np.testing.assert_array_equal(valid_samples(x, **options), expected)
+
+
+def test_the_middle_network_finds_the_middle_of_any_values():
+    rng = np.random.default_rng(8)
+    for n in range(2, 40):
+        values = rng.integers(n, size=(n, 500)).astype(float)
+        expected = np.sort(values, axis=0)[n // 2]
+        for i, j in middle_network(n):
+            values[[i, j]] = np.minimum(values[i], values[j]), np.maximum(values[i], values[j])
+        np.testing.assert_array_equal(values[n // 2], expected)

@@ -28,7 +28,8 @@ LEFTOVERS = (
     "tests/.ruff_cache/CACHEDIR.TAG",
 )
 SDIST = "import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])"
-NOWHERE = {"HOME": "/dev/null", "PYTHONDONTWRITEBYTECODE": "1"}
+# Nothing compiled can be kept: it is compiled sooner.
+NOWHERE = {"HOME": "/dev/null", "PYTHONDONTWRITEBYTECODE": "1", "NUMBA_OPT": "0"}
 
 
 def ignored(path):
