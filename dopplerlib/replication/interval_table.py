@@ -14,7 +14,10 @@ _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def interval_table(
-    rows: dict[str, dict[str, ArrayLike]], statistic: Literal["median", "mean"] = "median"
+    rows: dict[str, dict[str, ArrayLike]],
+    statistic: Literal["median", "mean"] = "median",
+    *,
+    transposed: bool = False,
 ) -> Table:
     """Return a table of medians or means over runs, with two digits and 95 % intervals.
 
@@ -25,6 +28,8 @@ def interval_table(
         fraction that is true.
     statistic : {"median", "mean"}
         Means are for counts, of which a median says little.
+    transposed : bool
+        Whether the variants are the columns: for more quantities than a page is wide.
 
     Returns
     -------
@@ -56,7 +61,11 @@ def interval_table(
         return f"{_short(one.value)} ({_short(one.low)} to {_short(one.high)})"
 
     cells = {label: [cell(one[name]) for name in names[0]] for label, one in rows.items()}
-    return Table(cells, names[0], corner=f"{statistic}, 95 %")
+    columns = names[0]
+    if _checks.one_boolean("transposed", transposed):
+        cells = dict(zip(names[0], zip(*cells.values(), strict=True), strict=True))
+        columns = list(rows)
+    return Table(cells, columns, corner=f"{statistic}, 95 %")
 
 
 def _short(value):

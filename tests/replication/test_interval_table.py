@@ -32,6 +32,15 @@ def test_quantities_are_found_by_their_names_and_not_by_their_order():
     assert first[1:] == second[1:]
 
 
+def test_a_transposed_table_has_the_same_cells():
+    rows = {"a": {"p": [1.0] * 9, "q": [2.0] * 9}, "b": {"p": [3.0] * 9, "q": [4.0] * 9}}
+    (corner, *names), *plain = interval_table(rows).cells
+    assert interval_table(rows, transposed=True).cells == [
+        [corner, "a", "b"],
+        *([name, *(row[i] for row in plain)] for i, name in enumerate(names, 1)),
+    ]
+
+
 @pytest.mark.parametrize(
     ("rows", "message"),
     [

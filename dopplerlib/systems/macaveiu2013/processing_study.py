@@ -380,13 +380,13 @@ def outcome_summary(figure: Figure, variant: Variant) -> dict[str, np.ndarray]:
     _checks.one_of("variant", variant, tuple(study_variants(figure)))
     s, one = automotive_settings(), saved_outcomes()[figure, variant]
     return {
-        "no track, % of scans": 100 * (1 - one["held"] / s.samples),
+        "no track (% of scans)": 100 * (1 - one["held"] / s.samples),
         "track within 1 s": one["first"] * s.T <= 1,
         "track lost": one["breaks"] > 0,
         "tracks on target": one["tracks"],
-        "error in m": one["error"][np.isfinite(one["error"])],
+        "error (m)": one["error"][np.isfinite(one["error"])],
         "false tracks": one["false"],
-        "their life in s": s.T * one["false_scans"],
+        "their life (s)": s.T * one["false_scans"],
     }
 
 
