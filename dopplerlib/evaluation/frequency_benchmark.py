@@ -149,7 +149,8 @@ class FrequencyBenchmark:
         if k == len(fractions) - 1:
             return np.inf
         # No outlier seen has no logarithm: half a window in all stands for it.
-        here, there = np.log(np.maximum(fractions[k : k + 2], 0.5 / self.windows))
+        least = min(0.5 / self.windows, fraction)
+        here, there = np.log(np.maximum(fractions[k : k + 2], least))
         step = (here - np.log(fraction)) / (here - there)
         return float(self.snr_db[k] + step * (self.snr_db[k + 1] - self.snr_db[k]))
 
@@ -247,13 +248,14 @@ def benchmark_cell(
     estimator = ESTIMATORS[_checks.one_of("name", name, tuple(ESTIMATORS))]
     bound = crlb_frequency_std(10 ** (snr_db / 10), x.shape[-1], FS)
     error = estimator(x, FS) - f
+    _checks.estimates("x", error)
     square = (error / bound) ** 2
     out = np.abs(error) > FS / x.shape[-1]
     near = mean_interval(np.where(out, 0.0, square), confidence=0.975)
     far = square[out].mean() if out.any() else 0.0
     fraction = proportion_interval(out, confidence=0.975)
     ends = (getattr(near, end) + getattr(fraction, end) * far for end in ("value", "low", "high"))
-    return ConfidenceInterval(*(float(np.sqrt(end)) for end in ends)), int(out.sum())
+    return ConfidenceInterval(*(float(np.sqrt(max(end, 0.0))) for end in ends)), int(out.sum())
 
 
 def saved_benchmark() -> FrequencyBenchmark:
