@@ -40,10 +40,6 @@ def chi_square(
         For each number of degrees of freedom, sums of that many squares of normal numbers.
     filled : int
         Of which density.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()
@@ -76,10 +72,6 @@ def clouds(errors: dict[str, Array], covariances: dict[str, Array], names: Seque
         What each filter believes.
     names : sequence of str
         The two components.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.6) as figure:
         axes = figure.subplots(1, len(errors), sharex=True, sharey=True)
@@ -114,10 +106,6 @@ def one_run(time: Array, values: dict[str, Array], interval: tuple[float, ...]) 
         Each statistic, by name.
     interval : tuple of float
         Where 95 % of the values lie.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 4.0) as figure:
         axes = figure.subplots(len(values), sharex=True, sharey=True)
@@ -142,10 +130,6 @@ def averages_spread(
         Time averages of each statistic, one for each run.
     intervals : dict of str to dict of str to tuple of float
         For each statistic, intervals by label.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.0) as figure:
         axes = figure.subplots(1, len(averages), sharex=True)
@@ -182,10 +166,6 @@ def causes(results: dict[str, Consistency], interval: tuple[float, ...], median:
         Where 95 % of single values of a consistent filter lie.
     median : float
         Their median.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 5.0) as figure:
         axes = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -216,10 +196,6 @@ def claims(time: Array, spread: Array, claimed: dict[str, Array]) -> Figure:
         Size of the actual error in m.
     claimed : dict of str to ndarray, shape (M,)
         Standard deviation of the range as each filter believes it, in m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()

@@ -22,10 +22,6 @@ def one_text(stages: Sequence[str], products: Sequence[str]) -> Figure:
         Boxes in a row, the formula first.
     products : sequence of str
         Boxes to which the last stage leads.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.5) as figure:
         ax = figure.subplots()
@@ -65,10 +61,6 @@ def derivative_errors(steps: Array, errors: dict[str, Array]) -> Figure:
         Steps in m.
     errors : dict of str to ndarray, shape (M,)
         Relative error of each method. Below one rounding of a double it is drawn there.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.8) as figure:
         ax = figure.subplots()
@@ -103,10 +95,6 @@ def position_errors(time: Array, errors: dict[str, Array]) -> Figure:
         Time in s.
     errors : dict of str to ndarray, shape (runs, K)
         Distances between estimate and truth in m, by label.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.6) as figure:
         ax = figure.subplots()

@@ -31,10 +31,6 @@ def bands(
         Standard deviations of `x` as the filter believes them.
     measured : ndarray, shape (K,), optional
         Velocities that the measurements alone give, in m/s.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.4) as figure:
         for i, ax in enumerate(figure.subplots(1, 2)):
@@ -66,10 +62,6 @@ def tangent(step: Array, shift: Array, line: Array, sigma_f: float) -> Figure:
         The linear approximation of `shift` in Hz.
     sigma_f : float
         Standard deviation of a measurement in Hz.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
@@ -100,10 +92,6 @@ def second_order(time: Array, ratios: dict[str, Array], ylabel: str) -> Figure:
         For each label, the neglected term as a multiple of the noise.
     ylabel : str
         Label of the vertical axis.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
@@ -134,10 +122,6 @@ def consistency(
         Where the averages of a consistent filter lie, for NEES and for NIS.
     titles : sequence of str
         Names of the targets.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 4.6) as figure:
         axes = figure.subplots(2, len(averages), sharex=True, sharey="row", squeeze=False)
@@ -168,10 +152,6 @@ def gap(time: Array, deviations: dict[str, Array], gaps: Sequence[tuple[float, f
         For each label, the standard deviations of the state.
     gaps : sequence of tuple (float, float)
         When sensors were missing, in s.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.4) as figure:
         axes = figure.subplots(1, 2)
@@ -196,10 +176,6 @@ def covariance_health(step: Array, results: dict[str, dict[str, Array]]) -> Figu
     results : dict of str to dict of str to ndarray, shape (up to M, 6, 6)
         For each title of a column and each label, covariances scaled to a unit diagonal. A series
         that is shorter than the others of its column ended because a variance became negative.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 4.8) as figure:
         axes = figure.subplots(2, len(results), sharex="col", sharey="row", squeeze=False)

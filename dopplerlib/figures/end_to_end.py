@@ -20,10 +20,6 @@ def when(delay: float, window: float) -> Figure:
         Group delay of the low-pass in s.
     window : float
         Length of the window in s.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.6) as figure:
         ax = figure.subplots()
@@ -68,10 +64,6 @@ def budget(
         empty name leaves a gap.
     moments : sequence of float
         The moments in s.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 0.5 + 0.27 * len(rows)) as figure:
         axes = figure.subplots(1, len(moments), sharey=True, sharex=True)
@@ -111,10 +103,6 @@ def wrong_time(
         Averages over runs, one list of K for each label.
     labels : sequence of str
         What the times are.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     styles = ((OURS, "-", 3.2), (ORANGE, "--", 1.5), (PINK, ":", 1.8))
     with styled(7.0, 3.2) as figure:
@@ -155,10 +143,6 @@ def starts(
         Shares of runs whose error is above `limit`.
     limit : float
         In m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.3) as figure:
         left, right = figure.subplots(1, 2)
@@ -204,10 +188,6 @@ def achievable(
         Median errors in m with their intervals, for each level.
     bounds : dict of str to sequence of float
         Medians in m that each bound would allow, for each level; two bounds at most.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()

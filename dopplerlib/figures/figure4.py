@@ -20,10 +20,6 @@ def errors_by_noise(ours: NoiseSweep, published: PublishedFigure4 | None = None)
         Drawn as a band from the least to the largest sequence, and their mean.
     published : PublishedFigure4, optional
         Drawn as dots.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7, 3.3) as figure:
         for ax, (part, unit) in zip(figure.subplots(1, 2), _PARTS, strict=True):
@@ -57,10 +53,6 @@ def mean_and_median(
         Mean position error at the bound, in m.
     variance : ndarray, shape (L,)
         Of the noise, in Hz^2.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     sigma_f = np.sqrt(variance)
     with styled(7, 3.2) as figure:
@@ -86,10 +78,6 @@ def sequences(sets: dict[str, tuple[Array, Array]]) -> Figure:
     sets : dict of str to pair of ndarray, shape (D,)
         By label: position errors in m/Hz and velocity errors in (m/s)/Hz, both divided by the
         deviation of the noise and averaged over levels. The first is the published one.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     looks = ((PUBLISHED, "o"), (OURS, "^"), (ORANGE, "s"), (PINK, "x"), (BOUND, "+"))
     with styled(7, 3.6) as figure:

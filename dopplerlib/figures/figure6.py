@@ -27,10 +27,6 @@ def scene(
         The sensors.
     run : int
         Which run to draw.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 4.6) as figure:
         ax = figure.add_subplot(projection="3d", computed_zorder=False)
@@ -63,10 +59,6 @@ def errors(result: ExampleRuns, published: PublishedFigure6, run: int = 0) -> Fi
         The digitized figure.
     run : int
         Which run to draw.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 5.2) as figure:
         axes = figure.subplots(3, sharex=True, sharey=True)
@@ -89,10 +81,6 @@ def error_bands(result: ExampleRuns, published: PublishedFigure6) -> Figure:
         Our runs.
     published : PublishedFigure6
         The digitized figure.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     runs = len(result.error)
     with styled(7.0, 6.4) as figure:
@@ -133,10 +121,6 @@ def nis(
         Bounds of NIS for a consistent filter.
     run : int
         Which run to draw.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     ours = result.track.nis[run], ~result.track.updated[run], "ours, one run", OURS
     theirs = published.nis, published.skipped, "published", PUBLISHED
@@ -172,10 +156,6 @@ def nis_averages(
         Published averages, by label.
     interval : tuple of float
         In which the average of a consistent filter lies.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()
@@ -204,10 +184,6 @@ def skipped_counts(result: ExampleRuns, published: PublishedFigure6) -> Figure:
         Runs with the two-sided gate.
     published : PublishedFigure6
         The digitized figure.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
 
     def counts(values, skipped):

@@ -36,10 +36,6 @@ def chain(stages: Sequence[str], rates: Sequence[str], per_sensor: int) -> Figur
         What each box gives; the last one is the result.
     per_sensor : int
         How many of the boxes exist once for every sensor.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.3) as figure:
         ax = figure.subplots()
@@ -93,10 +89,6 @@ def circle(time: Array, x: ComplexArray, turn: int) -> Figure:
         IQ samples.
     turn : int
         How many samples are drawn in the plane, about one turn.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.0) as figure:
         plane, trace = figure.subplots(1, 2, width_ratios=(1, 1.5))
@@ -145,10 +137,6 @@ def peak(
         Frequency of the parabola's top in Hz.
     truth : float
         True frequency in Hz.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.1) as figure:
         wide, near = figure.subplots(1, 2)
@@ -183,10 +171,6 @@ def impairments(f: Array, spectra: dict[str, Array], truth: float) -> Figure:
         Powers by label, relative to the echo.
     truth : float
         True frequency in Hz.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     styles = ((PUBLISHED, "-"), (ORANGE, "--"), (OURS, "-"))
     with styled(7.0, 3.3) as figure:
@@ -216,10 +200,6 @@ def tags(time: Array, shift: Array, windows: Array, center: Array, end: Array) -
         Start and end of each window in s.
     center, end : ndarray, shape (K,)
         Errors in Hz if an estimate is read as the shift at the center, and at the end.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.1) as figure:
         left, right = figure.subplots(1, 2)
@@ -250,10 +230,6 @@ def outliers(estimates: dict[str, Array], truth: float) -> Figure:
         Frequencies in Hz, by label.
     truth : float
         True frequency in Hz.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 2.8) as figure:
         axes = figure.subplots(1, len(estimates), sharex=True, sharey=True)
@@ -283,10 +259,6 @@ def threshold(
         Root-mean-square error in Hz that bound and outliers give together.
     law : ndarray, shape (L,)
         Predicted fraction of outliers.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 6.2) as figure:
         top, low = figure.subplots(2, 1, sharex=True, height_ratios=(1.5, 1))
@@ -321,10 +293,6 @@ def bias(fraction: Array, biases: dict[str, Array]) -> Figure:
         Distance from the nearest bin, in bins.
     biases : dict of str to ndarray, shape (M,)
         Absolute errors without noise, in bins, by label.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()
@@ -358,10 +326,6 @@ def best_window(
         For each tag lengths in s, predicted errors in Hz, and the best length in s.
     limit : float
         Standard deviation in Hz that is wanted.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.6) as figure:
         ax = figure.subplots()
@@ -395,10 +359,6 @@ def overlap(tau: Array, law: Array, lag: Array, measured: Sequence[ConfidenceInt
         Distances at which it was measured.
     measured : list of ConfidenceInterval, length L
         The results.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
@@ -429,10 +389,6 @@ def colored(
         Of the innovations, by label.
     belief : dict of str to tuple (ConfidenceInterval, ConfidenceInterval)
         For the same labels, mean NIS and mean NEES.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))

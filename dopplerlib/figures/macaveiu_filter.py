@@ -74,10 +74,6 @@ def claim_map(
         Fraction of the runs for each claim, and the ends of its interval.
     settings : AutomotiveSettings
         Our choice, to be marked.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
         A line surrounds the places in which a claim holds for sure; where the runs are too few to
         tell, the place is hatched.
     """

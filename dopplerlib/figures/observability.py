@@ -39,10 +39,6 @@ def likelihood_ridges(
         True distance and speed.
     bounds : dict of str to ndarray, shape (2, 2), optional
         Covariances of distance and speed of some of the records, drawn as two-sigma ellipses.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7, 2.9) as figure:
         axes = figure.subplots(1, len(misfits), sharex=True, sharey=True)
@@ -82,10 +78,6 @@ def blind_family(
         States with the same Doppler shifts, in order.
     azimuth, elevation : float
         From where they are seen, in degrees; see `project`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
 
     def view(points):
@@ -131,10 +123,6 @@ def bounds_by_change(
         Bounds on the position error in m, by kind of change.
     plain : dict of str to float, optional
         Bounds in m for the array as it is, by label.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7, 3.4) as figure:
         ax = figure.subplots()
@@ -173,10 +161,6 @@ def estimates(
         deviations in every direction.
     axes : sequence of tuple of int
         The two coordinates that each panel shows, out of 0, 1, 2.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7, 3.5) as figure:
         panels = figure.subplots(1, len(sets))
@@ -217,10 +201,6 @@ def bound_maps(x: Array, y: Array, maps: dict[str, Array], arrays: Sequence[Rada
         Bounds in m, one panel for each.
     arrays : sequence of RadarArray
         Sensors of each map, shown in the plane.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     levels = np.geomspace(1e-3, 10, 9)
     with styled(7, 3.6) as figure:
@@ -262,10 +242,6 @@ def bounds_over_time(
         The power law of short records in m.
     marks : dict of str to tuple of float, optional
         Points (length in s, error in m), by label.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7, 3.8) as figure:
         ax = figure.subplots()

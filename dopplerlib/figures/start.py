@@ -31,10 +31,6 @@ def reduced_cost(
         Points (horizontal, vertical) of each panel, by label.
     labels : sequence of tuple of str
         What the axes of each panel are.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     styles = (("s", TRUTH), ("X", OURS))
     colors = BoundaryNorm(_LEVELS, 256)
@@ -76,10 +72,6 @@ def error_distributions(
         The same two errors of single published starts.
     bounds : tuple of float
         Root mean square bounds of both.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7, 3.9) as figure:
         axes = figure.subplots(1, 2, sharey=True)
@@ -118,10 +110,6 @@ def errors_by_samples(
         Root mean square bounds in m.
     printed : tuple of float
         Number of samples and error of the published start.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     low, first, middle, third, high = np.transpose(
         [np.percentile(error, [5, 25, 50, 75, 95]) for error in errors]
@@ -166,10 +154,6 @@ def error_maps(
         Panels side by side.
     limits : tuple of float
         Ends of the color scale in m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     rows = -(-len(maps) // columns)
     with styled(7, 0.9 + 2.35 * rows * 3 / columns) as figure:
@@ -220,10 +204,6 @@ def area_fractions(limits: Array, panels: dict[str, dict[str, Array]]) -> Figure
     panels : dict of str to dict of str to ndarray, shape (L,) or (L, draws)
         Fractions by title of the panel and label of the curve. What has draws is ours and is drawn
         with the range of the central 95 % of them; what has none is published.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7, 3.4) as figure:
         axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
@@ -267,10 +247,6 @@ def line_profiles(axis: Array, profiles: dict[str, Array], bound: Array, lowest:
         Bound across the sensors in m: what they see well.
     lowest : float
         Lowest contour in m.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7, 3.2) as figure:
         ax = figure.subplots()

@@ -19,10 +19,6 @@ def record(time: Array, z: Array, shift: Array) -> Figure:
         Measurements in Hz.
     shift : ndarray, shape (K, N)
         True Doppler shifts in Hz.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     with styled(7.0, 3.8) as figure:
         ax, zoom = figure.subplots(1, 2, width_ratios=(3, 2))
@@ -54,10 +50,6 @@ def approach(time: Array, truth: Array, x: Array, run: int = 0) -> Figure:
         Estimated states.
     run : int
         Which run to draw.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     impact = time - x[..., 0] / x[..., 3]
     true_impact = time[0] - truth[0, 0] / truth[0, 3]
