@@ -6,9 +6,9 @@ many runs fail, in steps of 1 dB around the threshold.
 
 import sys
 
-from dopplerlib.systems.valarmathi import ALGORITHMS, chosen
-from dopplerlib.systems.valarmathi import study as made
-from dopplerlib.systems.valarmathi.published import PATHS
+from dopplerlib.systems.valarmathi import ALGORITHMS, reported
+from dopplerlib.systems.valarmathi import fusion_study as made
+from dopplerlib.systems.valarmathi.velocity_paths import PATHS
 
 FILES = (".errors.csv", ".threshold.csv")
 PARAMETERS = {
@@ -52,7 +52,7 @@ def error_rows(measures):
 
 def failure_rows(measures):
     """Return the rows of one cell, without path and ratio: how many runs failed."""
-    failed = chosen().failed_rmse
+    failed = reported().chosen.failed_rmse
     return [
         [a, len(measures[a, "whole"]), int((measures[a, "whole"] > failed).sum())]
         for a in ALGORITHMS

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from .._hints import Array, checked
 from ..evaluation.intervals import ConfidenceInterval, quantile_interval
-from ..systems.valarmathi import ALGORITHMS, AlgorithmRuns, Study, VelocityPath, WindowTable
+from ..systems.valarmathi import ALGORITHMS, AlgorithmRuns, FusionStudy, VelocityPath, WindowTable
 from .style import BOUND, OURS, PUBLISHED, TRUTH, VARIANTS, styled
 
 # The color of algorithms 1 to 6, and a line and a mark for print in gray.
@@ -161,7 +161,7 @@ def cumulative_errors(
 
 
 @checked
-def sweep(study: Study, failed: float, limits: Sequence[float]) -> Figure:
+def sweep(study: FusionStudy, failed: float, limits: Sequence[float]) -> Figure:
     """Draw RMS errors over the SNR: in the maneuvers, and at constant velocity.
 
     Parameters

@@ -64,7 +64,7 @@ def test_a_sweep_shows_medians_with_their_intervals_and_the_limits():
 
 
 def test_failures_are_drawn_in_percent_with_their_intervals():
-    shares = system.failed_shares()
+    shares = system.saved_failures()
     figure = draw.failures(shares, 0.05)
     assert [ax.get_title("left") for ax in figure.axes] == ["path 1", "path 2", "fighter"]
     for ax in figure.axes:
@@ -87,7 +87,7 @@ def test_every_path_and_both_correlations_have_their_line():
 
 
 def test_every_figure_fits_the_page_and_its_legend_names_what_is_drawn(table, result):
-    shares = system.failed_shares()
+    shares = system.saved_failures()
     figures = {
         "paths": draw.paths([result.path]),
         "window_error": draw.window_error(table, 30.0),

@@ -7,9 +7,8 @@ from importlib import import_module
 
 import pytest
 
+from dopplerlib.replication.documents import documents
 from dopplerlib.replication.published import Published
-
-ROOMS = ("asheim2015", "macaveiu2013", "mittermaier2016", "sombatsatien")
 
 
 def modules(room):
@@ -31,7 +30,7 @@ def offered(module):
     }
 
 
-@pytest.fixture(params=ROOMS)
+@pytest.fixture(params=documents())
 def room(request):
     """Return each room."""
     return request.param
@@ -69,5 +68,5 @@ def test_the_evidence_is_one_function_of_a_generator(room):
 
 def test_no_two_rooms_give_different_things_under_one_name():
     doors = {"Reported", "reported"}
-    homes = [set(import_module(f"dopplerlib.systems.{room}").__all__) - doors for room in ROOMS]
+    homes = [set(import_module(f"dopplerlib.systems.{room}").__all__) - doors for room in documents()]
     assert sum(map(len, homes)) == len(set().union(*homes))

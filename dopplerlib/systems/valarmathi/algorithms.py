@@ -1,14 +1,19 @@
 """The five algorithms of the document, and a sixth that knows how old its measurements are."""
 
+from typing import Annotated, Literal
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Runs, checked
 from ..._records import record
+from ..._typing import BoolArray, FloatArray
 from ...signal.synthesis import iq_from_velocity
-from .doppler_filter import FilteredDoppler, doppler_filter
-from .filters import VelocityTrack, filter_velocity
-from .published import VelocityPath, chosen, stated, velocity_path
-from .windows import cumulative_error
+from .published import reported
+from .velocity_filter import VelocityTrack, _decibels, filter_velocity
+from .velocity_paths import PathName, VelocityPath, velocity_path
+from .window_choice import WindowTable, cumulative_error
+from .window_transform import FilteredDoppler, doppler_filter
 
 ALGORITHMS = {
     1: "1 Kalman filter",
@@ -20,6 +25,12 @@ ALGORITHMS = {
 }
 
 
+Number = Literal[1, 2, 3, 4, 5, 6]  # of an algorithm
+Sensor = Literal[1, 2]
+Phase = Literal["all", "maneuver", "steady", "constant"]
+
+
+@checked
 @record
 class AlgorithmRuns:
     """Runs of all algorithms on the same samples of two sensors.
@@ -40,10 +51,15 @@ class AlgorithmRuns:
         Filters that choose by the fused state: 5.
     delayed : VelocityTrack
         Filters with one window that know its delay: 6.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described.
     """
 
     path: VelocityPath
-    snr_db: float
+    snr_db: Annotated[float, _decibels]
     doppler: FilteredDoppler
     fixed: VelocityTrack
     own: VelocityTrack
@@ -51,27 +67,28 @@ class AlgorithmRuns:
     delayed: VelocityTrack
 
     @property
-    def time(self):
+    def time(self) -> FloatArray:
         """Times of the estimates in s, shape (K,)."""
         return self.path.time[self.fixed.first :]
 
     @property
-    def truth(self):
+    def truth(self) -> FloatArray:
         """True velocities then in m/s, shape (K,)."""
         return self.path.v[self.fixed.first :]
 
-    def velocity(self, algorithm, sensor=1):
+    @checked
+    def velocity(self, algorithm: Number, sensor: Sensor = 1) -> FloatArray:
         """Return the velocities in m/s, shape (runs, K), of an algorithm from 1 to 6.
 
         `sensor` is the one whose filter is meant, of those with one sensor: 1, 2 and 6.
         """
-        _checks.one_of("algorithm", algorithm, tuple(ALGORITHMS))
         if algorithm in (1, 2, 6):
             track = {1: self.fixed, 2: self.own, 6: self.delayed}[algorithm]
-            return track.x[:, _checks.one_of("sensor", sensor, (1, 2)) - 1, :, 0]
+            return track.x[:, sensor - 1, :, 0]
         return {3: self.fixed, 4: self.own, 5: self.shared}[algorithm].fused_x[..., 0]
 
-    def during(self, phase):
+    @checked
+    def during(self, phase: Phase) -> BoolArray:
         """Return which estimates count: in "all", a "maneuver", a "steady" one, or "constant"."""
         masks = {
             "all": self.path.scored,
@@ -79,14 +96,14 @@ class AlgorithmRuns:
             "steady": self.path.steady,
             "constant": self.path.constant,
         }
-        return masks[_checks.one_of("phase", phase, tuple(masks))][self.fixed.first :]
+        return masks[phase][self.fixed.first :]
 
-    def rmse(self, algorithm, phase="all", sensor=1):
+    def rmse(self, algorithm: Number, phase: Phase = "all", sensor: Sensor = 1) -> FloatArray:
         """Return the root mean square error of each run in m/s, shape (runs,); see `during`."""
         error = (self.velocity(algorithm, sensor) - self.truth)[:, self.during(phase)]
         return np.sqrt(np.mean(error**2, axis=-1))
 
-    def cee(self, algorithm, sensor=1):
+    def cee(self, algorithm: Number, sensor: Sensor = 1) -> FloatArray:
         """Return the document's running error, counted from the first scored sample.
 
         Shape (runs, K').
@@ -94,7 +111,7 @@ class AlgorithmRuns:
         scored = self.during("all")
         return cumulative_error(self.truth[scored], self.velocity(algorithm, sensor)[:, scored])
 
-    def delay(self, algorithm, sensor=1):
+    def delay(self, algorithm: Number, sensor: Sensor = 1) -> FloatArray:
         """Return by how much each run is late in a steady maneuver, in s, shape (runs,)."""
         steady = self.during("steady")
         a = self.path.a[self.fixed.first :][steady]
@@ -102,12 +119,12 @@ class AlgorithmRuns:
         # A velocity that is late by d errs by -a d: least squares.
         return -error @ a / (a @ a)
 
-    def summary(self):
+    def summary(self) -> dict[str, dict[str, FloatArray]]:
         """Return, by the name of the algorithm, errors and delay of each run by what they are.
 
         Delays are in halves of the fixed window.
         """
-        half = (chosen().fixed_window - 1) / 2 * stated().T
+        half = (reported().chosen.fixed_window - 1) / 2 * reported().stated.T
         return {
             name: {
                 "maneuver (m/s)": self.rmse(number, "maneuver"),
@@ -119,7 +136,15 @@ class AlgorithmRuns:
         }
 
 
-def run_algorithms(name, snr_db, runs, table, *, rng):
+@checked
+def run_algorithms(
+    name: PathName,
+    snr_db: Annotated[float, _decibels],
+    runs: Runs,
+    table: WindowTable,
+    *,
+    rng: np.random.Generator,
+) -> AlgorithmRuns:
     """Run all algorithms on the same samples.
 
     Parameters
@@ -143,13 +168,21 @@ def run_algorithms(name, snr_db, runs, table, *, rng):
     Raises
     ------
     ValueError
-        If `name` is unknown or another argument is refused by what it is for.
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
+    >>> table = WindowTable([0, 10], [0, 20], [8, 64], cee)
+    >>> runs = run_algorithms("path 2", 15.0, 1, table, rng=np.random.default_rng(1))
+    >>> runs.rmse(1).shape, runs.cee(4).shape, runs.delay(5).shape, len(runs.summary())
+    ((1,), (1, 4760), (1,), 6)
     """
-    path, own, said = velocity_path(name), chosen(), stated()
+    path, own, said = velocity_path(name), reported().chosen, reported().stated
     both = np.stack([path.v, path.v])
     x = np.stack([
         iq_from_velocity(both, said.T, own.wavelength, snr_db, rng=child)
-        for child in rng.spawn(_checks.whole_number("runs", runs))
+        for child in rng.spawn(_checks.count("runs", runs, 10**4))
     ])  # fmt: skip
     doppler = doppler_filter(x, table.windows)
     return AlgorithmRuns(

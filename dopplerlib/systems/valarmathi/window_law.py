@@ -1,15 +1,23 @@
 """The best window in closed form, and what interpolating it linearly costs."""
 
+from typing import Annotated
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Count, Real, Reals, checked
+from ..._typing import FloatArray
 from ...signal.laws import optimal_window_end
-from .doppler_filter import measurement_variance
-from .published import chosen, stated
-from .windows import rising
+from .published import reported
+from .window_choice import Rising, WindowTable
+from .window_transform import measurement_variance
+
+Decibels = Annotated[FloatArray, _checks.decibels]
+Span = tuple[Real, Real]
 
 
-def best_window(acceleration, snr_db):
+@checked
+def best_window(acceleration: Reals, snr_db: Decibels) -> FloatArray:
     """Return the window whose velocity, used as that of its end, has the least error.
 
     Parameters
@@ -28,14 +36,22 @@ def best_window(acceleration, snr_db):
     Raises
     ------
     ValueError
-        If a value is not finite or an acceleration is zero.
+        If an argument is not of the kind described or an acceleration is zero.
+
+    Examples
+    --------
+    >>> best_window(10.0, 15.0).round().item()
+    27.0
     """
-    T = stated().T
-    chirp = 2 * np.asarray(acceleration, float) / chosen().wavelength
-    return optimal_window_end(10 ** (np.asarray(snr_db) / 10) / T, chirp) / T
+    T = reported().stated.T
+    if (acceleration == 0).any():
+        raise ValueError("acceleration must not be zero, where the longest window is best, got 0")
+    chirp = 2 * acceleration / reported().chosen.wavelength
+    return optimal_window_end(10 ** (snr_db / 10) / T, chirp) / T
 
 
-def law_rmse(window, acceleration, snr_db):
+@checked
+def law_rmse(window: Reals, acceleration: Reals, snr_db: Decibels) -> FloatArray:
     """Return the error of the Doppler filter's velocity, taken as that of the window's end.
 
     Parameters
@@ -51,18 +67,24 @@ def law_rmse(window, acceleration, snr_db):
     Raises
     ------
     ValueError
-        If a window is shorter than 2 samples.
+        If an argument is not of the kind described, or a window is shorter than 2 samples.
+
+    Examples
+    --------
+    >>> law_rmse(64, 10.0, 15.0).round(2).item()
+    0.95
     """
-    delay = (_checks.positive("window", window) - 1) / 2 * stated().T
+    delay = (_checks.positive("window", window) - 1) / 2 * reported().stated.T
     return np.sqrt(measurement_variance(window, snr_db) + (delay * acceleration) ** 2)
 
 
-def linear_cost(accelerations, snrs_db, points=40):
+@checked
+def linear_cost(accelerations: Rising, snrs_db: Rising, points: Count = 40) -> FloatArray:
     """Return what linear interpolation of the best window costs between some nodes.
 
     Parameters
     ----------
-    accelerations, snrs_db : sequence of float
+    accelerations, snrs_db : array_like, shape (A,) and (B,)
         Nodes at which the best window is known, rising: two or more of each.
     points : int
         Points along each axis, from the first node to the last.
@@ -75,10 +97,15 @@ def linear_cost(accelerations, snrs_db, points=40):
     Raises
     ------
     ValueError
-        If nodes do not rise, are less than two, or the accelerations begin at zero.
+        If an argument is not of the kind described, or an acceleration is not positive.
+
+    Examples
+    --------
+    >>> linear_cost([10.0, 80.0], [10.0, 40.0], points=10).max().round(2).item()
+    1.32
     """
-    accelerations = rising("accelerations", accelerations)
-    snrs_db = rising("snrs_db", snrs_db)
+    _checks.positive("accelerations", accelerations)
+    points = _checks.count("points", points, 1000)
     a = np.linspace(accelerations[0], accelerations[-1], points)
     s = np.linspace(snrs_db[0], snrs_db[-1], points)
     nodes = best_window(accelerations[:, None], snrs_db)
@@ -88,7 +115,8 @@ def linear_cost(accelerations, snrs_db, points=40):
     return law_rmse(linear, a, s) / law_rmse(best_window(a, s), a, s)
 
 
-def plane_error(accelerations, snrs_db, points=40):
+@checked
+def plane_error(accelerations: Span, snrs_db: Span, points: Count = 40) -> FloatArray:
     """Return how far the plane that fits the best windows best is off, relative to them.
 
     Parameters
@@ -106,8 +134,16 @@ def plane_error(accelerations, snrs_db, points=40):
     Raises
     ------
     ValueError
-        If a range does not rise, or the accelerations begin at zero.
+        If an argument is not of the kind described, a range does not rise, or an acceleration is
+        not positive.
+
+    Examples
+    --------
+    >>> np.abs(plane_error((10.0, 80.0), (10.0, 40.0), points=10)).max().round(2).item()
+    1.2
     """
+    _checks.positive("accelerations", accelerations)
+    points = _checks.count("points", points, 1000)
     a, s = np.meshgrid(
         np.linspace(*_checks.increasing_pair("accelerations", accelerations), points),
         np.linspace(*_checks.increasing_pair("snrs_db", snrs_db), points),
@@ -119,7 +155,8 @@ def plane_error(accelerations, snrs_db, points=40):
     return design @ weights / best - 1
 
 
-def law_exponents(table):
+@checked
+def law_exponents(table: WindowTable) -> tuple[float, float]:
     """Fit powers of acceleration and signal-to-noise ratio to the best windows of a simulation.
 
     Parameters
@@ -138,8 +175,17 @@ def law_exponents(table):
     Raises
     ------
     ValueError
-        If less than four cells count.
+        If `table` is not of the kind described, or less than four cells count.
+
+    Examples
+    --------
+    >>> windows = np.arange(4, 128)
+    >>> a, snr_db = np.array([5.0, 10.0, 20.0])[:, None, None], np.array([10.0, 20.0])[:, None]
+    >>> table = WindowTable([5, 10, 20], [10, 20], windows, law_rmse(windows, a, snr_db))
+    >>> [round(one, 1) for one in law_exponents(table)]
+    [-0.4, -0.2]
     """
+    _checks.positive("table.cee", table.cee)
     log_n, log_cee = np.log(table.windows), np.log(table.cee)
     rows = []
     for i, a in enumerate(table.accelerations):

@@ -3,7 +3,8 @@
 import numpy as np
 
 from dopplerlib.replication.documents import read_document
-from dopplerlib.systems import valarmathi as system
+from dopplerlib.systems.valarmathi import saved_study
+from dopplerlib.systems.valarmathi.evidence import evidence
 from tests.replication.review import check_verdicts
 
 CLAIMS = read_document("valarmathi").claims
@@ -27,6 +28,6 @@ def test_every_statement_of_abstract_results_and_conclusion_is_there():
 
 
 def test_the_verdicts_are_those_of_all_cells_of_the_study():
-    cells = system.saved_study().cells()
-    found = system.evidence(rng=np.random.default_rng(4), runs=20, cells=cells)
+    cells = saved_study().cells()
+    found = evidence(rng=np.random.default_rng(4), runs=20, cells=cells)
     check_verdicts(CLAIMS, found)

@@ -11,14 +11,14 @@ from scipy.stats import norm
 from dopplerlib._data import read_lines, results
 from dopplerlib.evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
 from dopplerlib.systems import valarmathi as system
-from dopplerlib.systems.valarmathi import study as made
-from dopplerlib.systems.valarmathi.published import PATHS
+from dopplerlib.systems.valarmathi import fusion_study as made
+from dopplerlib.systems.valarmathi.velocity_paths import PATHS
 from studies import velocity_fusion as tool
 
-OWN = system.chosen()
+OWN = system.reported().chosen
 FALSE_ALARM = 1e-6
 Z = norm.isf(FALSE_ALARM / 2)
-HALF = (OWN.fixed_window - 1) / 2 * system.stated().T
+HALF = (OWN.fixed_window - 1) / 2 * system.reported().stated.T
 BOTH = ("path 1", "path 2")
 
 
@@ -52,7 +52,7 @@ def test_the_study_covers_every_path_ratio_and_algorithm_with_enough_runs(study)
     np.testing.assert_array_equal(study.of("delay", "path 2", 4)[2], rows[
         (rows[:, :3] == [2, 0, 4]).all(axis=-1), 7
     ])  # fmt: skip
-    shares = system.failed_shares()
+    shares = system.saved_failures()
     assert set(shares) == {(path, a) for path in PATHS for a in system.ALGORITHMS}
     for snrs_db, _ in shares.values():
         np.testing.assert_array_equal(snrs_db, made.CLIFF_SNRS_DB)
@@ -239,7 +239,7 @@ def test_at_low_ratios_adaptation_helps_on_the_fast_path_only(study):
 
 
 def test_no_algorithm_fails_from_0_dB_on(study):
-    shares = system.failed_shares()
+    shares = system.saved_failures()
     for path in PATHS:
         for a in system.ALGORITHMS:
             whole = study.of("whole", path, a)
@@ -255,7 +255,7 @@ def test_no_algorithm_fails_from_0_dB_on(study):
 
 def test_one_sensor_fails_where_two_fail():
     """Noise that makes higher peaks than the tone does so at both sensors."""
-    shares = system.failed_shares()
+    shares = system.saved_failures()
     for path in PATHS:
         one, two = (system.failure_limit(*shares[path, a]).value for a in (2, 4))
         assert abs(one - two) < 3

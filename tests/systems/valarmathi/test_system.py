@@ -14,9 +14,10 @@ from dopplerlib.signal.interpolation import parabolic, parabolic_three_highest
 from dopplerlib.signal.laws import overlap_correlation_discrete
 from dopplerlib.signal.synthesis import iq_from_velocity, tone
 from dopplerlib.systems import valarmathi as system
+from dopplerlib.systems.valarmathi._pair_kernel import choose
 from dopplerlib.tracking.fusion import cross_covariance_step, fuse_state_vectors
 
-T, OWN = system.stated().T, system.chosen()
+T, OWN = system.reported().stated.T, system.reported().chosen
 FALSE_ALARM = 1e-6
 Z = norm.isf(FALSE_ALARM / 2)
 TABLE = system.WindowTable(
@@ -34,7 +35,7 @@ def runs():
 
 
 def test_the_numbers_of_the_document_agree_but_for_its_acceleration():
-    said = system.stated()
+    said = system.reported().stated
     assert said.T * said.samples == pytest.approx(said.duration)
     rate = (said.v_before - said.v_after) / said.maneuver
     assert abs(rate - said.acceleration) > 0.05  # it prints two digits after the point
@@ -42,7 +43,7 @@ def test_the_numbers_of_the_document_agree_but_for_its_acceleration():
 
 def test_the_paths_go_down_and_up_again_on_one_timeline():
     fast, gentle = system.velocity_path("path 2"), system.velocity_path("path 1")
-    said = system.stated()
+    said = system.reported().stated
     assert fast.v.min() == pytest.approx(said.v_after)
     assert fast.v[[0, -1]] == pytest.approx([said.v_before] * 2)
     np.testing.assert_array_equal(fast.maneuver, gentle.maneuver)
@@ -156,6 +157,13 @@ def test_the_filters_and_their_fusion_are_those_of_the_library(runs, delayed):
     np.testing.assert_allclose(track.fused_P[0, 299], fused[1], rtol=1e-6)
 
 
+def chosen_window(table, acceleration, snr_db):
+    """Return what the compiled filter would choose: windows of the shape of the arguments."""
+    lookup = table.accelerations, table.snrs_db, np.log(table.best), np.log(table.windows)
+    choices = np.vectorize(lambda a, snr: choose(a, snr, *lookup))(acceleration, snr_db)
+    return table.windows[choices]
+
+
 def test_the_next_window_is_that_of_the_table_for_what_the_filter_knows(runs):
     windows = runs.doppler.windows
     for track, fused in ((runs.own, False), (runs.shared, True)):
@@ -165,15 +173,15 @@ def test_the_next_window_is_that_of_the_table_for_what_the_filter_knows(runs):
             a = track.x[0, :, k, 1]
             if fused:
                 a, snr = np.full(2, track.fused_x[0, k, 1]), np.full(2, snr.mean())
-            chosen = system.choose_window(TABLE, a, snr)
+            chosen = chosen_window(TABLE, a, snr)
             np.testing.assert_array_equal(track.window[0, :, k + 1], chosen)
 
 
 def test_a_table_is_met_at_its_nodes_and_at_its_edges_beyond():
     a, snr = np.meshgrid(TABLE.accelerations, TABLE.snrs_db, indexing="ij")
-    np.testing.assert_array_equal(system.choose_window(TABLE, -a, snr), TABLE.best)
-    assert system.choose_window(TABLE, 1e3, 1e3) == TABLE.best[-1, -1]
-    assert system.choose_window(TABLE, 0.0, -1e3) == TABLE.best[0, 0]
+    np.testing.assert_array_equal(chosen_window(TABLE, -a, snr), TABLE.best)
+    assert chosen_window(TABLE, 1e3, 1e3) == TABLE.best[-1, -1]
+    assert chosen_window(TABLE, 0.0, -1e3) == TABLE.best[0, 0]
 
 
 def test_what_one_run_gives_does_not_depend_on_the_others():
@@ -256,7 +264,7 @@ def test_long_windows_are_late_and_short_ones_noisy():
 
 
 def test_the_limits_of_the_fighter_are_its_multiples_of_g_but_for_a_sign():
-    said, fighter = system.stated(), system.velocity_path("fighter")
+    said, fighter = system.reported().stated, system.velocity_path("fighter")
     assert fighter.a.min() == pytest.approx(-said.g_positive_si, rel=1e-3)
     assert fighter.a.max() == pytest.approx(said.g_negative_si, rel=1e-3)
     assert said.g_negative < 0 < said.g_negative_si
@@ -264,7 +272,7 @@ def test_the_limits_of_the_fighter_are_its_multiples_of_g_but_for_a_sign():
 
 def test_a_right_filter_reveals_the_noise_by_its_residuals_only_with_the_other_sign():
     """White measurements: the mean of 200 runs lies within its limits but once in a million."""
-    _, doppler = system.supposed_world(200, 700, 15.0, rng=np.random.default_rng(8))
+    _, doppler = system.matched_model(200, 700, 15.0, rng=np.random.default_rng(8))
     track = system.filter_velocity(doppler, 15.0)
     R = float(system.measurement_variance(OWN.fixed_window, 15.0))
     residual, HPH = system.updated_residual(track.innovation[:, 0, 200:], track.S[:, 0, 200:], R)
@@ -279,8 +287,8 @@ def test_a_right_filter_reveals_the_noise_by_its_residuals_only_with_the_other_s
 
 def test_only_fusion_that_knows_what_is_common_believes_what_is_true():
     """NEES of 300 independent records; a million seeds give one outside of these limits."""
-    truth, doppler = system.supposed_world(300, 400, 15.0, rng=np.random.default_rng(9))
-    ways = system.fusions(doppler, 15.0, delayed=False)
+    truth, doppler = system.matched_model(300, 400, 15.0, rng=np.random.default_rng(9))
+    ways = system.fuse_all(doppler, 15.0, delayed=False)
     found = {
         name: mean_interval(one["NEES"], 1 - FALSE_ALARM)
         for name, one in system.fusion_summary(ways, truth).items()
@@ -298,7 +306,7 @@ def test_a_filter_fed_with_overlapping_windows_claims_too_much_and_its_innovatio
     doppler = system.doppler_filter(x, [64])
     often, seldom = (system.filter_velocity(doppler, 15.0, hop=hop) for hop in (1, 64))
     for track, low, high in ((often, 2.0, 4.0), (seldom, 0.8, 1.1)):
-        told = system.honesty(track, 200.0, 640)
+        told = system.calibration(track, 200.0, 640)
         ratio = told["error (m/s)"].mean() / told["claimed (m/s)"].mean()
         assert low < ratio < high
         told = told["innovations, lag 1"].mean()
@@ -312,7 +320,7 @@ def test_a_filter_fed_with_overlapping_windows_claims_too_much_and_its_innovatio
 def test_summaries_hold_the_errors_of_each_run(runs):
     summary = runs.summary()[system.ALGORITHMS[3]]
     np.testing.assert_array_equal(summary["whole record (m/s)"], runs.rmse(3))
-    ways = system.fusions(runs.doppler, 15.0, delayed=False)
+    ways = system.fuse_all(runs.doppler, 15.0, delayed=False)
     errors = system.fusion_errors(ways, runs.path)
     for name, number in (("one sensor", 1), ("naive", 3)):
         expected = runs.rmse(number, "maneuver")
@@ -320,7 +328,7 @@ def test_summaries_hold_the_errors_of_each_run(runs):
 
 
 def test_a_gain_is_that_of_the_same_run_and_knowing_the_delay_gains_most_in_a_maneuver(runs):
-    rows = system.gains(runs.doppler, 15.0, runs.path)
+    rows = system.ablation(runs.doppler, 15.0, runs.path)
     start = rows["one sensor, fixed window"]
     np.testing.assert_allclose(start["maneuver (m/s)"], runs.rmse(1, "maneuver"), rtol=1e-6)
     np.testing.assert_allclose(start["gain, maneuver"], 1.0)
@@ -335,7 +343,7 @@ def test_a_gain_is_that_of_the_same_run_and_knowing_the_delay_gains_most_in_a_ma
 
 
 def test_estimates_are_compared_with_the_truth_at_their_own_time(runs):
-    ways = system.fusions(runs.doppler, 15.0, delayed=True, hop=64)
+    ways = system.fuse_all(runs.doppler, 15.0, delayed=True, hop=64)
     track = system.filter_velocity(runs.doppler, 15.0, delayed=True, hop=64)
     times = OWN.first + 64 * np.arange(track.x.shape[2])
     one = ways["one sensor"]
@@ -348,7 +356,7 @@ def test_estimates_are_compared_with_the_truth_at_their_own_time(runs):
 
 
 def test_two_sensors_together_measure_with_half_of_the_variance():
-    _, doppler = system.supposed_world(50, 200, 15.0, rng=np.random.default_rng(10))
+    _, doppler = system.matched_model(50, 200, 15.0, rng=np.random.default_rng(10))
     merged, ratio = system.merged_doppler(doppler, 15.0)
     assert ratio == pytest.approx(0.5)
     np.testing.assert_allclose(merged.v[:, :, 0], doppler.v.mean(axis=2), rtol=1e-12)

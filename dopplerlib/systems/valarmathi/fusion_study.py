@@ -1,14 +1,22 @@
 """All algorithms on all paths at all signal-to-noise ratios: a saved study, and each cell again."""
 
+from collections.abc import Sequence
+from typing import Annotated
+
 import numpy as np
 
 from ... import _checks
 from ..._data import read_lines, results
+from ..._hints import Index, Probability, Runs, checked, exactly
 from ..._records import record
+from ..._typing import FloatArray
 from ...evaluation.intervals import ConfidenceInterval, proportion_interval
-from .algorithms import ALGORITHMS, run_algorithms
-from .published import PATHS, chosen, stated
-from .windows import window_table
+from .algorithms import ALGORITHMS, AlgorithmRuns, Number, run_algorithms
+from .published import reported
+from .velocity_filter import _decibels
+from .velocity_paths import PATHS, PathName
+from .window_choice import WindowTable
+from .window_simulation import window_table
 
 SEED = 3
 RUNS = 100
@@ -18,8 +26,9 @@ CLIFF_RUNS = 200
 CLIFF_SNRS_DB = np.arange(-8.0, -1.0)
 
 
+@checked
 @record
-class Study:
+class FusionStudy:
     """Errors of every run of all algorithms on all paths at all signal-to-noise ratios.
 
     Attributes
@@ -31,29 +40,55 @@ class Study:
     measures : dict of str to ndarray, shape (paths, S, 6, runs)
         Of each run, root mean square errors in m/s of the "whole" record, of the "maneuver" and
         at "constant" velocity; the document's "cee" at the end in percent; and the "delay" in ms.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described.
+
+    Examples
+    --------
+    >>> measures = {name: np.ones((1, 2, 6, 3)) for name in MEASURES}
+    >>> study = FusionStudy(("path 1",), [0.0, 15.0], measures)
+    >>> study.runs, study.of("cee", "path 1", 2).shape, len(study.summary("path 1", 15.0))
+    (3, (2, 3), 6)
+    >>> len(study.cells())
+    2
     """
 
-    paths: tuple
-    snrs_db: np.ndarray
-    measures: dict
+    paths: tuple[str, ...]
+    snrs_db: Annotated[FloatArray, exactly(None)]
+    measures: dict[str, Annotated[FloatArray, exactly(None, None, 6, None)]]
+
+    def __post_init__(self):
+        """Check that the measures are those of all cells."""
+        if tuple(self.measures) != MEASURES:
+            raise ValueError(f"measures must be {MEASURES}, got {tuple(self.measures)}")
+        shape = len(self.paths), len(self.snrs_db), 6
+        for name, values in self.measures.items():
+            if values.shape != (*shape, self.runs):
+                raise ValueError(
+                    f"measures[{name!r}] must have shape {(*shape, self.runs)}, got {values.shape}"
+                )
 
     @property
-    def runs(self):
+    def runs(self) -> int:
         """Number of runs of each algorithm in each cell."""
         return self.measures["whole"].shape[-1]
 
-    def of(self, measure, path, algorithm):
+    @checked
+    def of(self, measure: str, path: str, algorithm: Number) -> FloatArray:
         """Return one measure of one algorithm on one path, shape (S, runs)."""
         _checks.one_of("measure", measure, tuple(self.measures))
-        _checks.one_of("algorithm", algorithm, tuple(ALGORITHMS))
         place = self.paths.index(_checks.one_of("path", path, self.paths))
         return self.measures[measure][place, :, algorithm - 1]
 
-    def summary(self, path, snr_db):
+    @checked
+    def summary(self, path: str, snr_db: float) -> dict[str, dict[str, FloatArray]]:
         """Return what `AlgorithmRuns.summary` would, of one cell."""
         levels = self.snrs_db.tolist()
-        j = levels.index(_checks.one_of("snr_db", float(snr_db), levels))
-        half = (chosen().fixed_window - 1) / 2 * stated().T
+        j = levels.index(_checks.one_of("snr_db", snr_db, levels))
+        half = (reported().chosen.fixed_window - 1) / 2 * reported().stated.T
         columns = {
             "maneuver (m/s)": ("maneuver", 1.0),
             "constant velocity (m/s)": ("constant", 1.0),
@@ -68,7 +103,7 @@ class Study:
             for number, name in ALGORITHMS.items()
         }
 
-    def cells(self):
+    def cells(self) -> dict[tuple[str, float], dict[tuple[int, str], FloatArray]]:
         """Return what `cell_measures` would, by path and signal-to-noise ratio."""
         return {
             (path, float(snr_db)): {
@@ -81,7 +116,8 @@ class Study:
         }
 
 
-def study_table(seed=SEED):
+@checked
+def study_table(seed: Index = SEED) -> WindowTable:
     """Return the table of windows that the study was made with.
 
     Parameters
@@ -92,11 +128,28 @@ def study_table(seed=SEED):
     Returns
     -------
     WindowTable
+
+    Raises
+    ------
+    ValueError
+        If `seed` is not a whole number.
+
+    Examples
+    --------
+    >>> study_table().best.shape
+    (7, 6)
     """
     return window_table(rng=np.random.default_rng(seed))
 
 
-def study_cell(path, snr_db, table, runs=RUNS, seed=SEED):
+@checked
+def study_cell(
+    path: PathName,
+    snr_db: Annotated[float, _decibels],
+    table: WindowTable,
+    runs: Runs = RUNS,
+    seed: Index = SEED,
+) -> AlgorithmRuns:
     """Simulate one cell of the study.
 
     Parameters
@@ -119,14 +172,24 @@ def study_cell(path, snr_db, table, runs=RUNS, seed=SEED):
     Raises
     ------
     ValueError
-        If `path` is unknown or another argument is refused by what it is for.
+        If an argument is not of the kind described.
+
+    Examples
+    --------
+    >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
+    >>> table = WindowTable([0, 10], [0, 20], [8, 64], cee)
+    >>> study_cell("path 2", 15.0, table, runs=1).velocity(1).shape
+    (1, 4860)
     """
-    number = PATHS.index(_checks.one_of("path", path, PATHS))
+    if snr_db < -100:
+        raise ValueError(f"snr_db must be at least -100, got {snr_db}")
+    number = PATHS.index(path)
     rng = np.random.default_rng([seed, number, round(10 * (snr_db + 100))])
     return run_algorithms(path, snr_db, runs, table, rng=rng)
 
 
-def cell_measures(result):
+@checked
+def cell_measures(result: AlgorithmRuns) -> dict[tuple[int, str], FloatArray]:
     """Return the measures of every run.
 
     Parameters
@@ -137,7 +200,19 @@ def cell_measures(result):
     Returns
     -------
     dict of (int, str) to ndarray, shape (runs,)
-        By algorithm and measure; see `Study`.
+        By algorithm and measure; see `FusionStudy`.
+
+    Raises
+    ------
+    ValueError
+        If `result` is not of the kind described.
+
+    Examples
+    --------
+    >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
+    >>> table = WindowTable([0, 10], [0, 20], [8, 64], cee)
+    >>> len(cell_measures(study_cell("path 2", 15.0, table, runs=1)))
+    30
     """
     return {
         (algorithm, measure): values
@@ -152,29 +227,40 @@ def cell_measures(result):
     }
 
 
-def saved_study():
+def saved_study() -> FusionStudy:
     """Read the study as ``make study NAME=velocity_fusion`` wrote it.
 
     Returns
     -------
-    Study
+    FusionStudy
+
+    Examples
+    --------
+    >>> saved_study().runs
+    100
     """
     rows = np.loadtxt(
         read_lines("velocity_fusion.errors.csv", folder=results), delimiter=",", skiprows=1
     )
     snrs_db = np.unique(rows[:, 1])
     rows = rows.reshape(len(PATHS), len(snrs_db), len(ALGORITHMS), -1, rows.shape[1])
-    return Study(PATHS, snrs_db, {name: rows[..., 3 + i] for i, name in enumerate(MEASURES)})
+    return FusionStudy(PATHS, snrs_db, {name: rows[..., 3 + i] for i, name in enumerate(MEASURES)})
 
 
-def failed_shares():
-    """Read which share of the runs fails where the errors begin to rise.
+def saved_failures() -> dict[tuple[str, int], tuple[FloatArray, tuple[ConfidenceInterval, ...]]]:
+    """Read which fraction of the runs fails where the errors begin to rise.
 
     Returns
     -------
     dict of (str, int) to tuple of (ndarray, tuple of ConfidenceInterval)
-        By path and algorithm: signal-to-noise ratios in dB, and at each the share of runs whose
+        By path and algorithm: signal-to-noise ratios in dB, and at each the fraction of runs whose
         error of the whole record is more than `failed_rmse` of `chosen`, with its interval.
+
+    Examples
+    --------
+    >>> snrs_db, fractions = saved_failures()["path 1", 1]
+    >>> len(snrs_db) == len(fractions)
+    True
     """
     rows = np.loadtxt(
         read_lines("velocity_fusion.threshold.csv", folder=results), delimiter=",", skiprows=1
@@ -192,7 +278,12 @@ def failed_shares():
     return shares
 
 
-def failure_limit(snrs_db, shares, limit=None):
+@checked
+def failure_limit(
+    snrs_db: Annotated[FloatArray, exactly(None)],
+    shares: Sequence[ConfidenceInterval],
+    limit: Probability | None = None,
+) -> ConfidenceInterval:
     """Return the signal-to-noise ratio above which an algorithm does not fail.
 
     Parameters
@@ -213,7 +304,8 @@ def failure_limit(snrs_db, shares, limit=None):
     Raises
     ------
     ValueError
-        If the share or an end of its interval does not pass the limit between the ratios.
+        If an argument is not of the kind described, or the share or an end of its interval does not
+        pass the limit between the ratios.
 
     Examples
     --------
@@ -222,8 +314,9 @@ def failure_limit(snrs_db, shares, limit=None):
     >>> failure_limit([0, 1, 2], shares, 0.05).value
     1.5
     """
-    snrs_db = _checks.finite("snrs_db", snrs_db, (None,))
-    limit = chosen().failed_share if limit is None else _checks.probability("limit", limit)
+    limit = reported().chosen.failed_share if limit is None else limit
+    if len(shares) != len(snrs_db):
+        raise ValueError(f"shares must be {len(snrs_db)} as ratios, got {len(shares)}")
     ends = []
     for end in ("value", "low", "high"):
         share = np.array([getattr(one, end) for one in shares])

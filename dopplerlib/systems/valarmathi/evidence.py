@@ -7,16 +7,16 @@ it best.
 
 import numpy as np
 
-from ... import _checks
+from ..._hints import Runs, checked
 from ...evaluation.intervals import ConfidenceInterval, mean_interval, quantile_interval
 from ...replication.readings import Readings
 from .algorithms import run_algorithms
-from .doppler_filter import measurement_variance
-from .noise import residual_variance, updated_residual
-from .published import chosen, stated
-from .study import cell_measures, failed_shares, failure_limit
+from .fusion_study import cell_measures, failure_limit, saved_failures
+from .published import reported
+from .residual_noise import residual_variance, updated_residual
 from .window_law import linear_cost, plane_error
-from .windows import window_table
+from .window_simulation import window_table
+from .window_transform import measurement_variance
 
 # What is simulated if no cells are given: enough for every verdict.
 CASES = (
@@ -32,7 +32,8 @@ BOTH = GENTLE + FAST
 LOWEST = 0.0  # dB; below, all algorithms begin to fail, and ratios of their errors say little
 
 
-def evidence(*, rng, runs=100, cells=None):
+@checked
+def evidence(*, rng: np.random.Generator, runs: Runs = 100, cells: dict | None = None) -> dict:
     """Collect the evidence for ``data/valarmathi/claims.toml``.
 
     Parameters
@@ -43,7 +44,7 @@ def evidence(*, rng, runs=100, cells=None):
         Number of records of both sensors on each path and at each signal-to-noise ratio. Less
         than 73 leave what one run in twenty exceeds without an upper bound.
     cells : dict, optional
-        Measures of runs by path and signal-to-noise ratio, as `Study.cells` returns them. If
+        Measures of runs by path and signal-to-noise ratio, as `FusionStudy.cells` returns them. If
         None, a few cells are simulated.
 
     Returns
@@ -56,8 +57,6 @@ def evidence(*, rng, runs=100, cells=None):
     ValueError
         If `runs` is not a positive whole number, or `rng` is not a generator.
     """
-    _checks.generator("rng", rng)
-    runs = _checks.whole_number("runs", runs)
     for_table, for_filter, *own = rng.spawn(2 + len(CASES))
     table = window_table(rng=for_table)
     simulated = {}
@@ -90,7 +89,7 @@ def _residuals(result):
     rest = error + result.delay(1)[:, None] * a
     share = 1 - np.mean(rest**2, axis=-1) / np.mean(error**2, axis=-1)
     constant = result.during("constant")
-    R = float(measurement_variance(chosen().fixed_window, result.snr_db))
+    R = float(measurement_variance(reported().chosen.fixed_window, result.snr_db))
     nu, S = (one[:, 0, constant] for one in (result.fixed.innovation, result.fixed.S))
     residual, HPH = updated_residual(nu, S, R)
     return {
@@ -100,7 +99,7 @@ def _residuals(result):
 
 
 def _arithmetic():
-    said, own = stated(), chosen()
+    said, own = reported().stated, reported().chosen
     return {
         "duration": said.T * said.samples,
         "acceleration": (said.v_before - said.v_after) / said.maneuver,
@@ -120,7 +119,7 @@ def _windows(table, after_filter):
         return float(table.cee[tuple(np.flatnonzero(axis == one)[0] for axis, one in axes)])
 
     judges = {"velocities of the Doppler filter": table, "of the Kalman filter": after_filter}
-    said, own = stated(), chosen()
+    said, own = reported().stated, reported().chosen
     a, snr_db = said.linear_above_acceleration, said.linear_above_snr_db
     region = (a, said.g_positive_si), (snr_db, own.table_snrs_db[-1])
     nodes = (
@@ -213,12 +212,12 @@ def _comparisons(found):
 def _limits(found):
     def worst(algorithms, paths, low, high=np.inf):
         return _largest(
-            quantile_interval(cell[a, "whole"], 1 - chosen().failed_share)
+            quantile_interval(cell[a, "whole"], 1 - reported().chosen.failed_share)
             for cell in _cells(found, paths, low, high)
             for a in algorithms
         )
 
-    said = stated()
+    said = reported().stated
     fused, single = said.snr_limit_fused_db, said.snr_limit_single_db
     return {
         "kalman-fails": worst((1,), BOTH, LOWEST),
@@ -232,7 +231,7 @@ def _limits(found):
 
 def _limits_apart():
     """Return by how much the limit of one adaptive filter is above that of two, on each path."""
-    shares = failed_shares()
+    shares = saved_failures()
     for path in BOTH:
         two, one = (failure_limit(*shares[path, a]) for a in (4, 2))
         yield ConfidenceInterval(one.value - two.value, one.low - two.high, one.high - two.low)

@@ -1,12 +1,19 @@
 """The variance of the measurements from what the filter leaves of them: Eq 14 and its sign."""
 
+from typing import Annotated, Literal
+
 import numpy as np
 
 from ... import _checks
-from .published import stated
+from ..._hints import Positive, Reals, checked, shaped
+from ..._typing import FloatArray
+from .published import reported
 
 
-def residual_variance(residual, HPH, sign=-1):
+@checked
+def residual_variance(
+    residual: Annotated[FloatArray, shaped(None)], HPH: Reals, sign: Literal[-1, 1] = -1
+) -> FloatArray:
     """Return the variance of the measurements as estimated from the residuals after the update.
 
     Parameters
@@ -27,7 +34,7 @@ def residual_variance(residual, HPH, sign=-1):
     Raises
     ------
     ValueError
-        If shapes do not fit, a value is not finite, or `sign` is neither of the two.
+        If an argument is not of the kind described, or there is no residual.
 
     Notes
     -----
@@ -40,15 +47,18 @@ def residual_variance(residual, HPH, sign=-1):
     >>> [round(float(residual_variance(residual, 0.2, sign)), 1) for sign in (-1, 1)]
     [0.8, 1.2]
     """
-    residual = _checks.finite("residual", residual, (None,))
-    HPH = _checks.finite("HPH", HPH)
-    sign = _checks.one_of("sign", sign, (-1, 1))
+    if not residual.size:
+        raise ValueError(f"residual must hold a value, got shape {residual.shape}")
+    _checks.check_broadcast("HPH", HPH.shape, "residual", residual.shape[:-1])
     middle = np.median(residual, axis=-1, keepdims=True)
-    spread = np.median(np.abs(residual - middle), axis=-1) / stated().mad_to_std
+    spread = np.median(np.abs(residual - middle), axis=-1) / reported().stated.mad_to_std
     return spread**2 + sign * HPH
 
 
-def updated_residual(innovation, S, R):
+@checked
+def updated_residual(
+    innovation: Reals, S: Annotated[FloatArray, _checks.positive], R: Positive
+) -> tuple[FloatArray, FloatArray]:
     """Return the residual after the update, and H P H' then, of a scalar measurement.
 
     Parameters
@@ -70,7 +80,14 @@ def updated_residual(innovation, S, R):
     Raises
     ------
     ValueError
-        If a variance is not positive or a value is not finite.
+        If an argument is not of the kind described, or a residual is beyond what a float can hold.
+
+    Examples
+    --------
+    >>> [one.tolist() for one in updated_residual([3.0], 4.0, 1.0)]
+    [[0.75], 0.75]
     """
-    S, R = _checks.positive("S", S), _checks.positive_number("R", R)
-    return _checks.finite("innovation", innovation) * R / S, R - R**2 / S
+    _checks.check_broadcast("S", S.shape, "innovation", innovation.shape)
+    residual, HPH = innovation * R / S, R - R**2 / S
+    _checks.estimates("innovation, S, R", residual, HPH)
+    return residual, HPH

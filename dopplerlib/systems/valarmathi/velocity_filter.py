@@ -1,15 +1,23 @@
 """The Kalman filter of the document behind one or two sensors, with a fixed or a chosen window."""
 
+from functools import partial
+from typing import Annotated, Literal
+
 import numpy as np
 
 from ... import _checks
+from ..._hints import Array, Count, Index, Positive, checked, shaped
 from ..._records import record
-from .doppler_filter import FilteredDoppler, measurement_variance, share
-from .published import chosen, stated
+from ..._typing import FloatArray, IntArray
+from .published import reported
+from .window_choice import WindowTable
+from .window_transform import FilteredDoppler, _share, measurement_variance
 
+_decibels = partial(_checks.one_number, check=_checks.decibels)
 FEEDBACK = ("none", "own", "fused")
 
 
+@checked
 @record
 class VelocityTrack:
     """What the filters of one or two sensors make of their measurements.
@@ -37,21 +45,30 @@ class VelocityTrack:
         Innovations in m/s and their supposed variances; NaN at the start.
     """
 
-    first: int
-    hop: int
-    x: np.ndarray
-    P: np.ndarray
-    P12: np.ndarray
-    fused_x: np.ndarray
-    fused_P: np.ndarray
-    window: np.ndarray
-    innovation: np.ndarray
-    S: np.ndarray
+    first: Index
+    hop: Count
+    x: Annotated[FloatArray, shaped(None, None, None, 2)]
+    P: Annotated[FloatArray, shaped(None, None, None, 2, 2)]
+    P12: Annotated[FloatArray, shaped(None, None, 2, 2)]
+    fused_x: Annotated[FloatArray, shaped(None, None, 2)]
+    fused_P: Annotated[FloatArray, shaped(None, None, 2, 2)]
+    window: Annotated[IntArray, shaped(None, None, None)]
+    innovation: Array
+    S: Array
 
 
+@checked
 def filter_velocity(
-    doppler, snr_db, *, window=None, table=None, feedback="none", delayed=False, hop=1, scale=1.0
-):
+    doppler: FilteredDoppler,
+    snr_db: Annotated[float, _decibels],
+    *,
+    window: Count | None = None,
+    table: WindowTable | None = None,
+    feedback: Literal["none", "own", "fused"] = "none",
+    delayed: bool = False,
+    hop: Count = 1,
+    scale: Positive = 1.0,
+) -> VelocityTrack:
     """Run a filter behind each sensor, and fuse their states as the document does.
 
     Parameters
@@ -82,25 +99,30 @@ def filter_velocity(
     Raises
     ------
     ValueError
-        If `doppler` has not one or two sensors, `window` is none of its windows, `feedback` is
-        unknown, or one is asked for without a table of the same windows.
+        If an argument is not of the kind described, `doppler` has not one or two sensors or begins
+        with what is missing, `window` is none of its windows, or a feedback is asked for without a
+        table of the same windows.
 
     Notes
     -----
     Eqs 7 to 12 and 15 to 17 of the document. The process noise, the variance of the measurements
-    and the start are not stated there; see `chosen`.
+    and the start are not stated there; see the table `chosen`.
+
+    Examples
+    --------
+    >>> doppler = FilteredDoppler([64], 0, np.full((1, 1, 2, 20), 250.0), np.zeros((1, 1, 2, 20)))
+    >>> filter_velocity(doppler, 15.0).fused_x[0, -1].round().tolist()
+    [250.0, 0.0]
     """
     from ._pair_kernel import compiled
 
-    _checks.instance("doppler", doppler, FilteredDoppler)
-    code = FEEDBACK.index(_checks.one_of("feedback", feedback, FEEDBACK))
-    own, said = chosen(), stated()
-    window = own.fixed_window if window is None else window
+    code = FEEDBACK.index(feedback)
+    own, said = reported().chosen, reported().stated
+    window = int(own.fixed_window) if window is None else window
     if doppler.v.ndim != 4 or doppler.v.shape[2] not in (1, 2):
         raise ValueError(f"doppler.v must have shape (W, runs, 1 or 2, K), got {doppler.v.shape}")
     if window not in doppler.windows:
         raise ValueError(f"window must be one of {doppler.windows.tolist()}, got {window}")
-    hop = _checks.whole_number("hop", hop)
     if code:
         if table is None or not np.array_equal(table.windows, doppler.windows):
             raise ValueError("table must be given for a feedback, and for the same windows")
@@ -122,7 +144,7 @@ def filter_velocity(
     fused_x, choice = np.empty((runs, count, 2)), np.empty(shape, np.int64)
     innovation, S = np.empty(shape), np.empty(shape)
     settings = (
-        measurement_variance(doppler.windows, snr_db) * _checks.positive_number("scale", scale),
+        measurement_variance(doppler.windows, snr_db) * scale,
         doppler.delays * bool(delayed),
         said.T * hop,
         own.q,
@@ -131,7 +153,7 @@ def filter_velocity(
         int(np.flatnonzero(doppler.windows == window)[0]),
     )
     results = x, P, P12, fused_x, fused_P, choice, innovation, S
-    share(
+    _share(
         lambda part: compiled(
             v[:, part], seen[:, part], *settings, *lookup, *(one[part] for one in results)
         ),

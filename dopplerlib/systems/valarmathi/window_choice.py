@@ -1,0 +1,112 @@
+"""How the document judges windows: its error, and the table of the best windows."""
+
+from typing import Annotated
+
+import numpy as np
+
+from ... import _checks
+from ..._hints import checked, exactly, shaped
+from ..._records import record
+from ..._typing import FloatArray, IntArray
+
+
+def _rising(name, value):
+    array = _checks.moderate(name, value, (None,))
+    if array.ndim != 1 or len(array) < 2 or (np.diff(array) <= 0).any():
+        raise ValueError(f"{name} must rise and hold at least two numbers, got {array.tolist()}")
+    return array
+
+
+def _lengths(name, value, least=3):
+    array = _checks.moderate(name, value, (None,))
+    if array.ndim != 1 or not len(array) or (array % 1 != 0).any() or array.min() < least:
+        raise ValueError(f"{name} must be whole numbers of at least {least}, got {array.tolist()}")
+    return array.astype(int)
+
+
+Rising = Annotated[FloatArray, _rising]
+Lengths = Annotated[IntArray, _lengths]  # of windows, in samples
+
+
+@checked
+@record
+class WindowTable:
+    """The best window for some accelerations and signal-to-noise ratios.
+
+    Attributes
+    ----------
+    accelerations : ndarray, shape (A,)
+        In m/s^2, rising.
+    snrs_db : ndarray, shape (B,)
+        In dB, rising.
+    windows : ndarray of int, shape (W,)
+        Lengths that were tried, in samples.
+    cee : ndarray, shape (A, B, W)
+        Their cumulative estimation errors at the end of a record, mean over the runs.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described.
+
+    Examples
+    --------
+    >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
+    >>> WindowTable([0, 10], [0, 20], [8, 64], cee).best.tolist()
+    [[8, 64], [8, 8]]
+    """
+
+    accelerations: Rising
+    snrs_db: Rising
+    windows: Lengths
+    cee: Annotated[FloatArray, exactly(None, None, None)]
+
+    def __post_init__(self):
+        """Check that there is one error for each cell and window."""
+        shape = len(self.accelerations), len(self.snrs_db), len(self.windows)
+        if self.cee.shape != shape:
+            raise ValueError(f"cee must have shape {shape}, got {self.cee.shape}")
+
+    @property
+    def best(self) -> IntArray:
+        """Windows with the least error, shape (A, B)."""
+        return self.windows[np.argmin(self.cee, axis=-1)]
+
+
+@checked
+def cumulative_error(
+    v: Annotated[FloatArray, exactly(None)],
+    estimate: Annotated[FloatArray, shaped(None)],
+) -> FloatArray:
+    """Return the running mean of the relative errors, which the document judges by.
+
+    Parameters
+    ----------
+    v : array_like, shape (K,)
+        True velocity in m/s, nowhere zero.
+    estimate : array_like, shape (..., K)
+        Estimated velocities.
+
+    Returns
+    -------
+    ndarray, shape (..., K)
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a value is not finite, or a true velocity is zero.
+
+    Notes
+    -----
+    Eq 13 of the document, "cee".
+
+    Examples
+    --------
+    >>> cumulative_error([100.0, 100.0], [101.0, 100.0]).tolist()
+    [0.01, 0.005]
+    """
+    _checks.check_shape("estimate", estimate, v.shape)
+    if (v == 0).any():
+        raise ValueError("v must not be zero, where a relative error has no meaning, got a 0")
+    count = np.arange(1, v.shape[-1] + 1)
+    return np.cumsum(np.abs(estimate - v) / np.abs(v), axis=-1) / count
