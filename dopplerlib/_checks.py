@@ -475,6 +475,14 @@ def moderate(name, value, shape=None):
     return array
 
 
+def bounded(name, value, shape=None, most=_MODERATE):
+    """Return `value` as by `measured`, or raise if a number in it is beyond `most` in size."""
+    array = measured(name, value, () if shape is None else shape)
+    good = np.isnan(array) | (np.abs(array) <= most)
+    _check_all(name, f"between -{most:g} and {most:g}", array, good)
+    return array
+
+
 def moderate_number(name, value):
     """Return `value` as a float, or raise if it is not one number from 1e-60 to 1e60."""
     number = positive_number(name, value)

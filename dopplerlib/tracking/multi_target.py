@@ -1,19 +1,28 @@
 """Multi-target tracking: predict, gate, assign, update, initiate."""
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from .. import _checks
+from .._hints import checked, exactly
 from .._records import record
-from .._typing import ArrayLike
+from .._typing import ArrayLike, BoolArray, FloatArray, IntArray
 from ..estimation import gaussian
 from ..estimation.extended_update import linearized
 from .association import gnn_assign
 from .management import CONFIRMED, DELETED, TrackManager
 
 
+def _whole(name, value):
+    array = _checks.finite(name, value, (None,))
+    if array.ndim != 1 or not len(array) or (array % 1 != 0).any() or (np.abs(array) > 2**53).any():
+        raise ValueError(f"{name} must be a row of whole numbers, got {array.tolist()}")
+    return array.astype(int)
+
+
+@checked
 @record
 class ManagedTrack:
     """One track from its first detection to its end.
@@ -30,13 +39,28 @@ class ManagedTrack:
         Which detection of the scan belongs to it; -1 where it was only predicted.
     confirmed : ndarray of bool, shape (L,)
         Whether it was confirmed by then.
+
+    Raises
+    ------
+    ValueError
+        If a field is not of the kind described, or they have different numbers of scans.
     """
 
-    scan: np.ndarray
-    x: np.ndarray
-    P: np.ndarray
-    detection: np.ndarray
-    confirmed: np.ndarray
+    scan: Annotated[IntArray, _whole]
+    x: Annotated[FloatArray, exactly(None, None, check=_checks.finite)]
+    P: Annotated[FloatArray, exactly(None, None, None, check=_checks.finite)]
+    detection: Annotated[IntArray, _whole]
+    confirmed: Annotated[BoolArray, exactly(None, check=_checks.booleans)]
+
+    def __post_init__(self):
+        """Check that the fields have one number of scans."""
+        n = self.x.shape[-1]
+        for name, shape in (("x", (n,)), ("P", (n, n)), ("detection", ()), ("confirmed", ())):
+            wanted = (len(self.scan), *shape)
+            if getattr(self, name).shape != wanted:
+                raise ValueError(
+                    f"{name} must have shape {wanted}, got {getattr(self, name).shape}"
+                )
 
 
 @_checks.quiet

@@ -80,6 +80,8 @@ def central_filter(
         p, _ = clipped_bilateration(z[:, 0, 0, 0], z[:, 1, 0, 0], records.baseline)
         start = np.zeros((runs, 4))
         start[:, 0], start[:, 1] = p[:, 0], np.maximum(p[:, 1], c.start_y)
+    if not np.isfinite(start).all():
+        raise ValueError("records must begin with detections of both radars where start is None")
     x = _checks.each_run("start", start, (runs,), (4,))
     P = np.broadcast_to(c.start_covariance * np.eye(4), (runs, 4, 4))
     # Radar 2 lags radar 1 by the offset, and radar 1 radar 2 by what is left of the interval.
@@ -150,6 +152,8 @@ def table_3_2(
     if start is None:
         y0 = np.maximum(np.where(valid[:, 0], y_tri[:, 0], 0.0), c.start_y)
         start = np.stack([x_tri[:, 0], y0, 0 * y0, 0 * y0], axis=-1)
+    if not np.isfinite(start).all():
+        raise ValueError("records must begin with detections of both radars where start is None")
     x = _checks.each_run("start", start, (len(measured),), (4,))
     P = np.broadcast_to(c.start_covariance * np.eye(4), (len(x), 4, 4))
     F = ncv_transition(records.time[1] - records.time[0], dim=2, order="derivative")
@@ -231,7 +235,7 @@ def _gated(x, P, z, sensor, settings):
     """Update with one radar's detection where the gate lets it through."""
     predicted = range_rate(x, sensor[None])[:, 0]
     H = range_rate_jacobian(x, sensor[None])[:, 0]
-    R = settings.R(predicted[:, 0])[..., None] * np.eye(2)
+    R = settings.R(predicted[:, 0], "records")[..., None] * np.eye(2)
     nu = z - predicted
     xu, Pu, S = gaussian.update(x, P, nu, H, R)
     # The quadratic form of the inverse of S, written out: a solver takes longer.

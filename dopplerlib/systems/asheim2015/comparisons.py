@@ -4,18 +4,26 @@ from typing import Annotated
 
 import numpy as np
 
+from ... import _checks
 from ..._hints import Positive, Real, Runs, checked, exactly
 from ..._typing import FloatArray
 from ...evaluation.bootstrap import bootstrap_interval
 from ...evaluation.intervals import ConfidenceInterval
 from .cartesian_tracker import central_filter
 from .measures import position_errors, rmse_interval, usable_interval
+from .noise import _near
 from .position_tracker import PositionTrack, filter_then_bilaterate
 from .published import reported
 from .scene import RadarRecords, simulate_radars, straight_track
 from .settings import filter_settings
 
-Values = Annotated[FloatArray, exactly(None)]
+
+def _positive(name, value, shape):
+    return _checks.positive(name, _near(name, value, shape))
+
+
+Values = Annotated[FloatArray, exactly(None, check=_near)]
+Positives = Annotated[FloatArray, exactly(None, check=_positive)]
 
 
 @checked
@@ -99,6 +107,8 @@ def late_radar(
     4
     """
     T = reported().scenario.real.T
+    if (offsets < 0).any() or (offsets > T).any():
+        raise ValueError(f"offsets must lie between 0 and {T} s, got {offsets.tolist()}")
     own = filter_settings("modern", T)
     names = (
         "apart, delay ignored",
@@ -130,7 +140,7 @@ def late_radar(
 
 @checked
 def baseline_sweep(
-    baselines: Values,
+    baselines: Positives,
     runs: Runs,
     *,
     rng: np.random.Generator,
@@ -184,7 +194,7 @@ def baseline_sweep(
 @checked
 def rejected_scans(
     starts: Values,
-    densities: Values,
+    densities: Positives,
     runs: Runs,
     *,
     rng: np.random.Generator,

@@ -1,5 +1,6 @@
 """How large the error of a position has to be: the area of the thesis, and the bound."""
 
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -9,17 +10,19 @@ from ..._hints import Count, Positive, checked, exactly, shaped
 from ..._typing import FloatArray
 from ...evaluation.range_bounds import range_crlb
 from ...tracking.bilateration import bilaterate
-from .noise import noise_std
+from .noise import _near, noise_std
 from .published import reported
-from .scene import radar_positions
+from .scene import Baseline, radar_positions
+
+Decibels = Annotated[float, partial(_checks.one_number, check=_checks.decibels)]
 
 
 @checked
 def error_area(
-    position: Annotated[FloatArray, exactly(2)] | None = None,
-    snr_db: Annotated[float, _checks.decibels] | None = None,
+    position: Annotated[FloatArray, exactly(2, check=_near)] | None = None,
+    snr_db: Decibels | None = None,
     n_sigma: Positive | None = None,
-    baseline: Positive | None = None,
+    baseline: Baseline | None = None,
     points: Count = 1,
 ) -> FloatArray:
     """Return the corners of the area in which a bilaterated position is expected (Fig 5.5).
@@ -73,7 +76,7 @@ def error_area(
 
 @checked
 def one_scan_bound(
-    p: Annotated[FloatArray, shaped(2)], baseline: Positive | None = None
+    p: Annotated[FloatArray, shaped(2, check=_near)], baseline: Baseline | None = None
 ) -> FloatArray:
     """Return the least covariance of a position from the two ranges of one scan.
 
@@ -87,7 +90,8 @@ def one_scan_bound(
     Returns
     -------
     ndarray, shape (..., 2, 2)
-        The bound of `range_crlb` with the noise that Eq 5.1 has at each range, in m^2.
+        The bound of `range_crlb` with the noise that Eq 5.1 has at each range, in m^2: infinite or
+        NaN on the line through the radars, where ranges do not fix y.
 
     Raises
     ------

@@ -11,7 +11,7 @@ from ...evaluation.bootstrap import bootstrap_interval
 from ...evaluation.intervals import ConfidenceInterval
 
 Times = Annotated[FloatArray, exactly(None)]  # of scans; distances at them
-Errors = Annotated[FloatArray, exactly(None, None, check=_checks.measured)]
+Errors = Annotated[FloatArray, exactly(None, None, check=_checks.bounded)]
 
 # A position is of use as long as its root mean square error, averaged over a second, is below a
 # meter. The first seconds do not count: there the filter settles.
@@ -117,7 +117,7 @@ def rmse(error: Errors, time: Times, at: Real, half_width: Positive = 0.5) -> fl
     >>> rmse([[0.3, 0.1], [0.4, 0.2]], [0.0, 2.0], 0.0).__round__(3)
     0.354
     """
-    return float(np.sqrt(np.nanmean(np.square(_near(error, time, at, half_width)))))
+    return float(np.sqrt(np.nanmean(np.square(_near("error", error, time, at, half_width)))))
 
 
 @checked
@@ -148,7 +148,7 @@ def rmse_interval(
     >>> print(rmse_interval(error, [0.0, 2.0], 0.0, rng=rng))
     0.354 (0.3 to 0.4)
     """
-    sums = [part.sum(axis=1) for part in _squares(_near(error, time, at, half_width))]
+    sums = [part.sum(axis=1) for part in _squares(_near("error", error, time, at, half_width))]
     return bootstrap_interval(lambda s, n: np.sqrt(s / n), sums, rng=rng)
 
 
@@ -188,13 +188,16 @@ def rmse_ratio(
     >>> rmse_ratio(2 * error, error, [0.0, 2.0], 0.0, rng=rng).value
     2.0
     """
-    sums = [part.sum(axis=1) for e in (a, b) for part in _squares(_near(e, time, at, half_width))]
+    if a.shape != b.shape:
+        raise ValueError(f"b must have the shape {a.shape} of a, got {b.shape}")
+    near = _near("a", a, time, at, half_width), _near("b", b, time, at, half_width)
+    sums = [part.sum(axis=1) for e in near for part in _squares(e)]
     return bootstrap_interval(lambda sa, na, sb, nb: np.sqrt(sa / na / (sb / nb)), sums, rng=rng)
 
 
 @checked
 def usable_range(
-    error: Annotated[FloatArray, shaped(None, None, check=_checks.measured)],
+    error: Annotated[FloatArray, shaped(None, None, check=_checks.bounded)],
     time: Times,
     distance: Times,
 ) -> FloatArray:
@@ -226,6 +229,9 @@ def usable_range(
     >>> float(usable_range([time / 6], time, 2 * time))
     14.0
     """
+    _check_scans(time, distance, error=error)
+    if not error.shape[-2]:
+        raise ValueError(f"error must have a run, got shape {error.shape}")
     squares, there = (part.mean(axis=-2) for part in _squares(error))
     return _first_above(squares, there, time, distance)
 
@@ -259,6 +265,7 @@ def usable_interval(
     >>> usable_interval([time / 6, time / 6], time, 2 * time, rng=rng).value
     14.0
     """
+    _check_scans(time, distance, error=error)
     return bootstrap_interval(
         lambda s, n: _first_above(s, n, time, distance), _squares(error), rng=rng
     )
@@ -295,6 +302,9 @@ def usable_ratio(
     >>> usable_ratio([time / 8], [time / 6], time, 2 * time, rng=rng).value.__round__(2)
     1.29
     """
+    _check_scans(time, distance, a=a, b=b)
+    if a.shape != b.shape:
+        raise ValueError(f"b must have the shape {a.shape} of a, got {b.shape}")
 
     def reach(squares, there):
         return np.minimum(_first_above(squares, there, time, distance), distance[-1])
@@ -305,12 +315,20 @@ def usable_ratio(
     return bootstrap_interval(ratio, [*_squares(a), *_squares(b)], rng=rng)
 
 
-def _near(error, time, at, half_width):
-    _checks.check_shape("error", error, time.shape)
+def _near(name, error, time, at, half_width):
+    _checks.check_shape(name, error, time.shape)
     near = error[:, np.abs(time - at) <= half_width + 1e-9]
     if not np.isfinite(near).any():
         raise ValueError(f"at must have errors within {half_width} s, got {at}")
     return near
+
+
+def _check_scans(time, distance, **errors):
+    """Raise unless there are two scans or more, and a value at each."""
+    if len(time) < 2 or time[0] >= time[1]:
+        raise ValueError(f"time must have two scans or more and rise, got {time.tolist()}")
+    for name, values in {"distance": distance, **errors}.items():
+        _checks.check_shape(name, values, time.shape)
 
 
 def _squares(error):
@@ -321,10 +339,6 @@ def _squares(error):
 
 def _first_above(squares, there, time, distance):
     """Return the distance at which root mean squares (..., K) are first above the limit."""
-    if len(time) < 2 or time[0] >= time[1]:
-        raise ValueError(f"time must have two scans or more and rise, got {time.tolist()}")
-    _checks.check_shape("error", squares, time.shape)
-    _checks.check_shape("distance", distance, time.shape)
     # A scan without any estimate counts as unusable.
     mean = np.divide(squares, there, out=np.full(np.shape(squares), np.inf), where=there > 0)
     curve = np.sqrt(mean)

@@ -21,7 +21,7 @@ Scans = Annotated[FloatArray, exactly(None)]
 
 @checked
 def managed_tracks(
-    detections: Annotated[FloatArray, exactly(None, None, 2, check=_checks.measured)],
+    detections: Annotated[FloatArray, exactly(None, None, 2, check=_checks.bounded)],
     settings: FilterSettings,
 ) -> list[ManagedTrack]:
     """Track one record with tracks that are started, confirmed and deleted.
@@ -62,7 +62,7 @@ def managed_tracks(
         settings.Q,
         lambda x: x,
         lambda x: np.eye(2),
-        lambda x: settings.R(x[..., 0])[..., None] * np.eye(2),
+        lambda x: settings.R(x[..., 0], "detections")[..., None] * np.eye(2),
         lambda z: (z, np.broadcast_to(settings.P0, (len(z), 2, 2))),
         TrackManager(s.hits, s.window, s.delete_after),
         gate_probability=settings.gate_probability,
@@ -191,7 +191,7 @@ def pda_ranges(
 
     def step(k, state):
         x, P = gaussian.predict(*state, F, settings.Q)
-        R = settings.R(x[..., 0])[..., None] * np.eye(2)
+        R = settings.R(x[..., 0], "detections")[..., None] * np.eye(2)
         after = pda_update(
             x, P, z[..., k, :, :], np.eye(2), R,
             detection=own.detection, density=density, gate=settings.gate_probability,

@@ -1,16 +1,26 @@
 """The noise of one radar: resolutions, signal-to-noise ratio, standard deviations (Chapter 5)."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
 
 from ... import _checks
-from ..._hints import Reals, checked
+from ..._hints import checked
 from ..._typing import FloatArray
 from ...model.ranging_noise import linear_snr, range_std
 from .published import reported
 
+FARTHEST = 240.0  # m: there Eq 5.1 has -2828 dB, and ratios end at -3000
+
+
+def _near(name, value, shape=()):
+    return _checks.bounded(name, _checks.finite(name, value, shape), (), FARTHEST)
+
+
+Near = Annotated[float, partial(_checks.one_number, check=_near)]
+Ranges = Annotated[FloatArray, _near]
 Law = Annotated[Callable[..., Any], _checks.function]  # signal-to-noise ratio in dB of the range
 
 
@@ -34,7 +44,8 @@ def resolutions() -> tuple[float, float]:
     return n.speed_of_light * n.pulse / 2, wavelength / (2 * n.integration)
 
 
-def snr(d: Reals) -> FloatArray:
+@checked
+def snr(d: Ranges) -> FloatArray:
     """Return the signal-to-noise ratio at a range, Eq 5.1.
 
     Parameters
@@ -50,7 +61,7 @@ def snr(d: Reals) -> FloatArray:
     Raises
     ------
     ValueError
-        If `d` is not finite or beyond 1e60.
+        If `d` is not finite or beyond 240 m.
 
     Examples
     --------
@@ -62,7 +73,7 @@ def snr(d: Reals) -> FloatArray:
 
 
 @checked
-def noise_std(d: Reals, law: Law | None = None) -> FloatArray:
+def noise_std(d: Ranges, law: Law | None = None) -> FloatArray:
     """Return the standard deviations of range and range rate at a range, Eqs 5.4 and 5.6.
 
     Parameters
@@ -80,7 +91,7 @@ def noise_std(d: Reals, law: Law | None = None) -> FloatArray:
     Raises
     ------
     ValueError
-        If `d` is not finite, or so large that a standard deviation is not.
+        If an argument is not of the kind described, or a range is beyond 240 m.
 
     Examples
     --------

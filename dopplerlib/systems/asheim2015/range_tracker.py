@@ -11,10 +11,11 @@ from ..._typing import FloatArray
 from ...estimation import recursion
 from ...tracking.association import nearest_neighbor
 from ...tracking.gates import chi2_gate, fixed_box_gate
+from .noise import _near
 from .settings import FilterSettings
 
-Detections = Annotated[FloatArray, shaped(None, None, 2, check=_checks.measured)]
-Starts = Annotated[FloatArray, shaped(2)]
+Detections = Annotated[FloatArray, shaped(None, None, 2, check=_checks.bounded)]
+Starts = Annotated[FloatArray, shaped(2, check=_near)]
 
 
 @checked
@@ -109,7 +110,7 @@ def track_ranges(
 
     def step(k, state):
         x, P = _predicted(*state, settings)
-        R = settings.R(x[..., 0])
+        R = settings.R(x[..., 0], "detections")
         nu = z[..., k, :, :] - x[..., None, :]
         nis, accept = _gate(nu, P, R, settings, m)
         if k == 0:

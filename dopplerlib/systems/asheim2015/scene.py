@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -12,10 +13,22 @@ from ..._records import record
 from ..._typing import FloatArray
 from ...model.range_rate import range_rate
 from ...model.ranging_noise import detection_probability
-from .noise import Law, noise_std, snr
+from .noise import Law, _near, noise_std, snr
 from .published import reported
 
-Times = Annotated[FloatArray, exactly(None)]
+
+def _short(name, value):
+    return _checks.bounded(name, _checks.finite(name, value), (), 20.0)
+
+
+def _baseline(name, value):
+    return _checks.positive_number(name, _checks.one_number(name, value, _short))
+
+
+Baseline = Annotated[float, _baseline]  # distance of the radars in m
+LONGEST = 100.0  # s: then the person is 14 m away, and what is measured is noise
+Times = Annotated[FloatArray, exactly(None, check=partial(_checks.bounded, most=2 * LONGEST))]
+Offset = Annotated[float, partial(_checks.one_number, check=partial(_checks.bounded, most=10.0))]
 
 
 @checked
@@ -53,15 +66,19 @@ class RadarRecords:
     """
 
     time: Times
-    truth: Annotated[FloatArray, exactly(None, 4)]
-    sensors: Annotated[FloatArray, exactly(2, 2)]
-    ranges: Annotated[FloatArray, exactly(2, None, 2)]
-    z: Annotated[FloatArray, exactly(None, 2, None, 2, check=_checks.measured)]
-    offset: Real
+    truth: Annotated[FloatArray, exactly(None, 4, check=_near)]
+    sensors: Annotated[FloatArray, exactly(2, 2, check=_near)]
+    ranges: Annotated[FloatArray, exactly(2, None, 2, check=_near)]
+    z: Annotated[FloatArray, exactly(None, 2, None, 2, check=_checks.bounded)]
+    offset: Offset
 
     def __post_init__(self):
         """Check that the fields have one number of scans."""
         K = len(self.time)
+        if not (np.diff(self.time) > 0).all():
+            raise ValueError(f"time must rise, got {self.time.tolist()}")
+        if not self.baseline > 0:
+            raise ValueError(f"sensors must have x rising, got {self.sensors.tolist()}")
         for name, length in (
             ("truth", len(self.truth)), ("ranges", self.ranges.shape[1]), ("z", self.z.shape[2])
         ):  # fmt: skip
@@ -101,7 +118,7 @@ class RadarRecords:
 
 
 @checked
-def radar_positions(baseline: Positive | None = None) -> FloatArray:
+def radar_positions(baseline: Baseline | None = None) -> FloatArray:
     """Return the positions of the two radars on the x axis.
 
     Parameters
@@ -116,7 +133,7 @@ def radar_positions(baseline: Positive | None = None) -> FloatArray:
     Raises
     ------
     ValueError
-        If `baseline` is not positive.
+        If `baseline` is not positive, or beyond 20 m.
 
     Examples
     --------
@@ -215,7 +232,8 @@ def scan_times(T: Positive | None = None, duration: Positive | None = None) -> F
     Raises
     ------
     ValueError
-        If the record is shorter than one interval, or a million times as long.
+        If the record is shorter than one interval, longer than 100 s, or has more than a million
+        scans.
 
     Examples
     --------
@@ -225,10 +243,10 @@ def scan_times(T: Positive | None = None, duration: Positive | None = None) -> F
     s = reported().scenario.tracks
     T = s.T if T is None else T
     duration = s.duration if duration is None else duration
-    if not T <= duration <= 1e6 * T:
+    if not T <= duration <= min(1e6 * T, LONGEST):
         raise ValueError(
-            f"duration must be at least the interval of {T} s, and a million intervals at most, "
-            f"got {duration}"
+            f"duration must be at least the interval of {T} s, and at most {LONGEST:g} s or a "
+            f"million intervals, got {duration}"
         )
     return np.arange(round(duration / T) + 1) * T
 
@@ -241,11 +259,11 @@ def simulate_radars(
     track: Callable[..., Any] = straight_track,
     T: Positive | None = None,
     duration: Positive | None = None,
-    baseline: Positive | None = None,
+    baseline: Baseline | None = None,
     law: Law | None = None,
     rate: Literal["difference", "exact"] = "difference",
     correlated: Runs = 1,
-    offset: Real = 0.0,
+    offset: Offset = 0.0,
     false_alarm: Probability | None = None,
 ) -> RadarRecords:
     """Return records of both radars, as Appendix A simulates them.
@@ -299,7 +317,9 @@ def simulate_radars(
     step = time[1] - time[0]
     ranges = []
     for n, delay in enumerate((0.0, offset)):
-        d = range_rate(_checks.called("track", track, time + delay), sensors[n : n + 1])[:, 0]
+        states = _near("track(time)", _checks.called("track", track, time + delay), (4,))
+        _checks.check_shape("track(time)", states, (len(time), 4))
+        d = range_rate(states, sensors[n : n + 1])[:, 0]
         if rate == "difference":
             forward = np.diff(d[:, 0]) / step
             d[:, 1] = np.append(forward, forward[-1])
@@ -357,6 +377,6 @@ def noisy_positions(
     (11, 2)
     """
     states = _checks.called("track", track, scan_times(T))
-    p = _checks.moderate("track(time)", states, (4,))[:, :2]
+    p = _near("track(time)", states, (4,))[:, :2]
     sigma = noise_std(np.hypot(p[:, 0], p[:, 1]))[:, :1]
     return p, p + sigma * rng.standard_normal((len(p), 1 if same else 2))
