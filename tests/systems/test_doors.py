@@ -68,5 +68,7 @@ def test_the_evidence_is_one_function_of_a_generator(room):
 
 def test_no_two_rooms_give_different_things_under_one_name():
     doors = {"Reported", "reported"}
-    homes = [set(import_module(f"dopplerlib.systems.{room}").__all__) - doors for room in documents()]
+    homes = [
+        set(import_module(f"dopplerlib.systems.{room}").__all__) - doors for room in documents()
+    ]
     assert sum(map(len, homes)) == len(set().union(*homes))

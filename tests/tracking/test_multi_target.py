@@ -181,3 +181,29 @@ def test_bad_input_is_named(name, value):
     with pytest.raises(ValueError) as raised:
         track_scans([np.zeros((2, 1))] * 2, h=lambda x: x @ H.T, H=lambda x: H, **arguments)
     assert str(raised.value).startswith(f"{name} must ")
+
+
+def test_noise_that_depends_on_the_state_is_that_of_each_track():
+    """Two targets, of which the far one has four times the noise: as if each were tracked alone."""
+    rng = np.random.default_rng(41)
+    z = np.stack([positions(rng, 0.0, 1.0), positions(rng, 100.0, -1.0)], axis=-1)
+
+    def noise(x):
+        return np.where(x[..., :1, None] > 50, 16.0, 1.0) * R
+
+    scans = [row[:, None] for row in z]
+    tracks = track_scans(scans, F, Q, lambda x: x @ H.T, lambda x: H, noise, start, MANAGER)
+    for track, factor, one in zip(tracks, (1.0, 16.0), z.T, strict=True):
+        (alone,) = track_scans(
+            [[[value]] for value in one], F, Q, lambda x: x @ H.T, lambda x: H, factor * R, start,
+            MANAGER,
+        )  # fmt: skip
+        np.testing.assert_allclose(track.x, alone.x, rtol=1e-12)
+
+
+def test_exclusive_starts_leave_one_track_for_the_echoes_of_a_body():
+    """Two echoes half a meter apart, where a new track is known to 0.2 m and speeds to 2 m/s."""
+    z = positions(np.random.default_rng(42), 0.0, 1.0)
+    scans = [[[one], [one + 0.5], [one + 50.0]] for one in z]
+    assert len(run(scans)) > 2
+    assert [len(track.scan) for track in run(scans, exclusive=True)] == [K, K]
