@@ -1,4 +1,6 @@
 # Made by python -m tools.stubs; do not edit.
+from . import covariances as covariances
+from . import densities as densities
 from . import extended_kalman as extended_kalman
 from . import extended_update as extended_update
 from . import gaussian as gaussian

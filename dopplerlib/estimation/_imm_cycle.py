@@ -7,7 +7,7 @@ probabilities but for a constant.
 import numpy as np
 
 from .. import _checks
-from . import gaussian, sigma_points
+from . import covariances, densities, gaussian, sigma_points
 
 
 def cycle(k, state, models, rules, log_transition):
@@ -30,7 +30,7 @@ def cycle(k, state, models, rules, log_transition):
         x, P = predict(k, *_mixture(parts, weight[..., j]))
         innovation, K, P, S = correct(k, x, P)
         after.append((gaussian.moved(x, K, innovation), P))
-        densities.append(gaussian.log_density(innovation, S))
+        densities.append(densities.log_density(innovation, S))
     log_mode = now + np.stack(densities, axis=-1)
     log_mode = log_mode - log_mode.max(axis=-1, keepdims=True)
     return tuple(x for x, _ in after), tuple(P for _, P in after), log_mode
@@ -55,14 +55,14 @@ def _mixture(parts, weight):
     """Return mean and covariance of a mixture of estimates of one meaning."""
     x = np.stack([x for x, _ in parts], axis=-2)
     P = np.stack([P for _, P in parts], axis=-3)
-    return gaussian.mixture(x, P, weight)
+    return densities.mixture(x, P, weight)
 
 
 def _common(model, x, P):
     """Return the estimate of a model in the common meaning."""
     if model.to_common is None:
         return x, P
-    return _through("to_common", model.to_common, None, x, gaussian.square_root(P))
+    return _through("to_common", model.to_common, None, x, covariances.square_root(P))
 
 
 def _own(models, i, j, common, xs, Ps):
@@ -74,7 +74,7 @@ def _own(models, i, j, common, xs, Ps):
         return common[i]
     # What the common state does not tell comes from the estimate of model j, as uncorrelated.
     (x, P), c = common[i], common[i][0].shape[-1]
-    L, L_own = gaussian.square_root(P), gaussian.square_root(Ps[j])
+    L, L_own = covariances.square_root(P), covariances.square_root(Ps[j])
     upper = np.concatenate([L, np.zeros((*L.shape[:-1], L_own.shape[-1]))], axis=-1)
     lower = np.concatenate([np.zeros((*L_own.shape[:-1], c)), L_own], axis=-1)
     return _through(
@@ -92,4 +92,4 @@ def _through(name, function, length, x, L):
         return _checks.each_run(f"{name}(x)", _checks.finite(f"{name}(x)", value), shape, ())
 
     mean, slope, rest = sigma_points.regression(checked, x, L, sigma_points.scaling(x.shape[-1]))
-    return mean, gaussian.squared(np.concatenate([slope, rest], axis=-1))
+    return mean, covariances.squared(np.concatenate([slope, rest], axis=-1))

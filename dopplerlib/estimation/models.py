@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from .._typing import BoolArray, FloatArray
-from . import gaussian, sigma_points
+from . import covariances, gaussian, sigma_points
 from .extended_update import linearized, wrapped
 from .recursion import Correct, Predict
 
@@ -37,8 +37,8 @@ def sampled_motion(f: Each, Q: FloatArray, scale: tuple[float, float]) -> Predic
     """Return the prediction by functions f at sigma points, see `sigma_points.scaling`."""
 
     def predict(k, x, P):
-        mean, FL, rest = sigma_points.regression(f[k], x, gaussian.square_root(P), scale)
-        return mean, gaussian.squared(np.concatenate([FL, rest], axis=-1), Q[k])
+        mean, FL, rest = sigma_points.regression(f[k], x, covariances.square_root(P), scale)
+        return mean, covariances.squared(np.concatenate([FL, rest], axis=-1), Q[k])
 
     return predict
 
@@ -78,10 +78,10 @@ def sampled_measurement(
     """Return the correction by measurements of functions h at sigma points."""
 
     def correct(k, x, P):
-        L = gaussian.square_root(P)
+        L = covariances.square_root(P)
         mean, HL, rest = sigma_points.regression(h[k], x, L, scale, wrap)
         innovation = wrapped(z[..., k, :] - mean, wrap)
-        noise = R[k] + gaussian.squared(rest)
+        noise = R[k] + covariances.squared(rest)
         return innovation, *gaussian.gain_of_root(P, L, HL, noise, ~np.isnan(innovation))
 
     return correct

@@ -7,7 +7,7 @@ import numpy as np
 from .. import _checks
 from .._records import record
 from .._typing import ArrayLike, FloatArray
-from . import gaussian
+from . import covariances, gaussian
 
 
 @record
@@ -167,7 +167,7 @@ def _terms(x, P, sigma, variance):
     C = B @ P
     H = np.concatenate([(A @ v[..., None])[..., 0], u], axis=-1)[..., None, :]
     if variance == "corrected":  # The trace of C C, as a sum of squares: that of L' B L squared.
-        L = gaussian.square_root(P)
+        L = covariances.square_root(P)
         extra = 2 * np.sum((L.mT @ B @ L) ** 2, axis=(-2, -1))
     else:
         extra = 2 * np.sum(C**2, axis=(-2, -1))

@@ -13,7 +13,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import FloatArray
-from . import gaussian
+from . import densities, gaussian
 from .track import Track
 
 Predict = Callable[[int, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
@@ -92,7 +92,7 @@ def cycle(
     x_after = gaussian.moved(x, K, innovation)
     if bounds is None:
         return (x_after, P_after), (x_after, P_after, innovation, S)
-    nis, count = gaussian.quadratic_form(innovation, S), _count(innovation)
+    nis, count = densities.quadratic_form(innovation, S), _count(innovation)
     updated = (count > 0) & (bounds[0][count] <= nis) & (nis <= bounds[1][count])
     x = np.where(updated[..., None], x_after, x)
     P = np.where(updated[..., None, None], P_after, P)
@@ -129,7 +129,7 @@ def filter_records(
         lambda k, state: cycle(k, state, predict, correct, bounds), (x, P), times, axis
     )
     if not gated:
-        gated = [gaussian.quadratic_form(innovation, S), _count(innovation) > 0]
+        gated = [densities.quadratic_form(innovation, S), _count(innovation) > 0]
     runs = x.shape[:-1]
     P, S = (np.broadcast_to(v, (*runs, *v.shape[-2:])) for v in (P, S))
     return Track(x, P, innovation, S, *gated)

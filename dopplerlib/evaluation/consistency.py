@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
-from ..estimation import gaussian
+from ..estimation import densities
 from ..estimation.imm import ImmTrack
 from ..estimation.track import Track
 from ._innovations import estimates, measured, whiten
@@ -94,7 +94,7 @@ def nis(innovation: ArrayLike, S: ArrayLike) -> FloatArray:
     25.0
     """
     innovation, S, there = measured(innovation, S)
-    value = gaussian.quadratic_form(innovation, S)
+    value = densities.quadratic_form(innovation, S)
     _checks.estimates("innovation, S", value, what="NIS")
     return np.where(there.any(axis=-1), value, np.nan)[()]
 
@@ -147,7 +147,7 @@ def _form_of_singular(error, P, size):
     scale = np.where(known, 1.0, deviation)
     value, vector = np.linalg.eigh(P / (scale[..., :, None] * scale[..., None, :]))
     along = (vector.mT @ np.where(known, 0.0, error / scale)[..., None])[..., 0]
-    null = value <= P.shape[-1] ** 2 * np.finfo(float).eps  # as in `gaussian.solve`
+    null = value <= P.shape[-1] ** 2 * np.finfo(float).eps  # as in `covariances.solve`
     # A direction whose variance is rounding is known to a millionth of a deviation, and no state
     # better than to 1e-9 of its size.
     rounding = 1e-9 * size

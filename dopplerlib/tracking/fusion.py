@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import ArrayLike, FloatArray
-from ..estimation import gaussian
+from ..estimation import covariances, gaussian
 
 
 @_checks.quiet
@@ -70,19 +70,19 @@ def fuse_state_vectors(
     joint = np.block([[P1, P12], [P12.mT, P2]])
     _checks.covariance("P12 with P1 and P2, [[P1, P12], [P12', P2]],", joint, 2 * n, definite=False)
     W = np.linalg.solve(S, (P1 - P12).mT).mT
-    root = gaussian.square_root(joint)
+    root = covariances.square_root(joint)
     x = gaussian.moved(x1, W, x2 - x1)
-    P = gaussian.squared(np.concatenate([np.eye(n) - W, W], axis=-1) @ root)
+    P = covariances.squared(np.concatenate([np.eye(n) - W, W], axis=-1) @ root)
     _checks.estimates("x1, P1, x2, P2, P12", x, P)
     return x, P
 
 
 def _independent(x1, P1, x2, P2):
     """Return the fusion of independent estimates; what both know exactly is that of the first."""
-    W = gaussian.solve(P1 + P2, P1).mT
+    W = covariances.solve(P1 + P2, P1).mT
     A = np.eye(x1.shape[-1]) - W
-    parts = np.broadcast_arrays(A @ gaussian.square_root(P1), W @ gaussian.square_root(P2))
-    x, P = gaussian.moved(x1, W, x2 - x1), gaussian.squared(np.concatenate(parts, axis=-1))
+    parts = np.broadcast_arrays(A @ covariances.square_root(P1), W @ covariances.square_root(P2))
+    x, P = gaussian.moved(x1, W, x2 - x1), covariances.squared(np.concatenate(parts, axis=-1))
     _checks.estimates("the two estimates", x, P)
     return x, P
 
@@ -201,13 +201,13 @@ def covariance_intersection(
     # P is P1 M P2 with the inverse M of this sum, which also holds for the weights 0 and 1. Written
     # as w B P1 B' + (1 - w) A P2 A' with A = P1 M and B = P2 M, it is a sum of squares.
     both = (1 - w) * P1 + w * P2
-    A = np.where(w > 0, gaussian.solve(both, P1).mT, np.eye(P1.shape[-1]))
-    B = np.where(w < 1, gaussian.solve(both, P2).mT, np.eye(P1.shape[-1]))
-    L1, L2 = gaussian.square_root(P1), gaussian.square_root(P2)
+    A = np.where(w > 0, covariances.solve(both, P1).mT, np.eye(P1.shape[-1]))
+    B = np.where(w < 1, covariances.solve(both, P2).mT, np.eye(P1.shape[-1]))
+    L1, L2 = covariances.square_root(P1), covariances.square_root(P2)
     parts = np.broadcast_arrays(np.sqrt(w) * (B @ L1), np.sqrt(1 - w) * (A @ L2))
     x, P = (
         gaussian.moved(x1, (1 - w) * A, x2 - x1),
-        gaussian.squared(np.concatenate(parts, axis=-1)),
+        covariances.squared(np.concatenate(parts, axis=-1)),
     )
     _checks.estimates("x1, P1, x2, P2", x, P)
     return x, P
@@ -272,13 +272,13 @@ def _best_weight(P1, P2):
     # of sum log(w / a + (1 - w) / b) falls from w = 0 to w = 1. Singular values, whose squares a
     # and b are, never come out negative.
     P1, P2 = np.broadcast_arrays(P1, P2)
-    root = gaussian.square_root(P1 + P2)
-    white = gaussian.solve(P1 + P2, root).mT
+    root = covariances.square_root(P1 + P2)
+    white = covariances.solve(P1 + P2, root).mT
     # For what both know exactly no weight is better: one half each.
     rest = np.sqrt(0.5) * (np.eye(P1.shape[-1]) - white @ root)
     a, b = (
         np.linalg.svd(np.concatenate([white @ half, rest], axis=-1), compute_uv=False) ** 2
-        for half in (gaussian.square_root(P1), gaussian.square_root(P2))
+        for half in (covariances.square_root(P1), covariances.square_root(P2))
     )
     b = b[..., ::-1]
     low, high = np.zeros(a.shape[:-1]), np.ones(a.shape[:-1])

@@ -9,7 +9,7 @@ from .. import _checks
 from .._hints import checked, exactly
 from .._records import record
 from .._typing import ArrayLike, BoolArray, FloatArray, IntArray
-from ..estimation import gaussian
+from ..estimation import densities, gaussian
 from ..estimation.extended_update import linearized
 from .association import gnn_assign
 from .management import CONFIRMED, DELETED, TrackManager
@@ -170,7 +170,7 @@ def track_scans(
         J = _checks.each_run("H(x)", J, (len(x), 1), (m, n))[:, 0]
         noise = _checks.covariance("R(x)", _checks.called("R", R, x), m) if callable(R) else R
         K, updated, S = gaussian.gain(P, J, noise)
-        cost = gaussian.quadratic_forms(nu, S)
+        cost = densities.quadratic_forms(nu, S)
         return nu, K, updated, np.where(cost <= size, cost, np.inf)
 
     for number, scan in enumerate(scans):

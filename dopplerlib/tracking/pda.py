@@ -5,7 +5,7 @@ import numpy as np
 from .. import _checks
 from .._records import record
 from .._typing import ArrayLike
-from ..estimation import gaussian
+from ..estimation import covariances, densities, gaussian
 
 
 @record
@@ -109,9 +109,9 @@ def pda_update(
     nu = gaussian.innovation(x[..., None, :], z, H[..., None, :, :])
     there = ~np.isnan(nu).any(axis=-1)
     nu = np.where(there[..., None], nu, 0.0)
-    inside = there & (gaussian.quadratic_forms(nu, S) <= 2 * gammaincinv(m / 2, gate))
+    inside = there & (densities.quadratic_forms(nu, S) <= 2 * gammaincinv(m / 2, gate))
     nu = np.where(inside[..., None], nu, 0.0)
-    odds = np.log(detection) - np.log(density) + gaussian.log_density(nu, S[..., None, :, :])
+    odds = np.log(detection) - np.log(density) + densities.log_density(nu, S[..., None, :, :])
     weight, missed = _shares(np.where(inside, odds, -np.inf), np.log1p(-detection * gate))
 
     # The mixture of the prediction and the updates with each detection: all move by K, and what
@@ -119,7 +119,7 @@ def pda_update(
     mean = np.sum(weight[..., None] * nu, axis=-2)
     off = np.sqrt(weight)[..., None] * (nu - mean[..., None, :])
     stay = np.sqrt(missed)[..., None] * mean
-    spread = gaussian.squared(K @ np.concatenate([off, stay[..., None, :]], axis=-2).mT)
+    spread = covariances.squared(K @ np.concatenate([off, stay[..., None, :]], axis=-2).mT)
     share = missed[..., None, None]
     x, P = gaussian.moved(x, K, mean), share * P + (1 - share) * updated + spread
     _checks.estimates("x, P, z, H, R", x, P, weight)

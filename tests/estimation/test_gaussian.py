@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from dopplerlib.estimation import gaussian
+from dopplerlib.estimation import covariances, densities, gaussian
 
 n, m, runs = 4, 3, 5
 RNG = np.random.default_rng(21)
@@ -31,8 +31,8 @@ def test_missing_components_are_as_if_they_had_no_row(there):
     np.testing.assert_allclose(got, want, rtol=0, atol=1e-12)
     np.testing.assert_allclose(got_P, want_P, rtol=0, atol=1e-12)
     np.testing.assert_allclose(S, H @ P @ H.T + R, rtol=1e-12)
-    nis, density = gaussian.quadratic_form(holes, S), gaussian.log_density(holes, S)
-    np.testing.assert_allclose(nis, gaussian.quadratic_form(few, small), rtol=1e-11)
+    nis, density = densities.quadratic_form(holes, S), densities.log_density(holes, S)
+    np.testing.assert_allclose(nis, densities.quadratic_form(few, small), rtol=1e-11)
     expected = [multivariate_normal(cov=one).logpdf(v) for v, one in zip(few, small, strict=True)]
     np.testing.assert_allclose(density, expected, rtol=1e-11)
 
@@ -50,28 +50,28 @@ def test_each_run_may_miss_something_else_and_one_that_misses_all_keeps_every_bi
         np.testing.assert_allclose(got_P[run], want_P, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(got[3], x[3])
     np.testing.assert_array_equal(got_P[3], P[3])
-    nis = gaussian.quadratic_form(holes, S)
+    nis = densities.quadratic_form(holes, S)
     assert np.isnan(nis).tolist() == [False, False, False, True, False]
-    assert gaussian.log_density(holes, S)[3] == 0
+    assert densities.log_density(holes, S)[3] == 0
 
 
 def test_many_vectors_with_one_covariance_are_each_a_quadratic_form():
     v = RNG.standard_normal((runs, 7, m))
     S = covariance(m, runs)
-    each = gaussian.quadratic_form(v, S[:, None])
-    np.testing.assert_allclose(gaussian.quadratic_forms(v, S), each, rtol=1e-11)
+    each = densities.quadratic_form(v, S[:, None])
+    np.testing.assert_allclose(densities.quadratic_forms(v, S), each, rtol=1e-11)
     v[2, 3] = np.nan
     v[2, 4, 0] = np.nan
     np.testing.assert_allclose(
-        gaussian.quadratic_forms(v, S), gaussian.quadratic_form(v, S[:, None]), rtol=1e-11
+        densities.quadratic_forms(v, S), densities.quadratic_form(v, S[:, None]), rtol=1e-11
     )
-    assert gaussian.quadratic_forms(v[:, :0], S).shape == (runs, 0)
+    assert densities.quadratic_forms(v[:, :0], S).shape == (runs, 0)
 
 
 def test_the_moments_of_a_mixture_are_those_of_its_draws():
     """Five moments of 200 000 draws, each within 5 of its deviations: by chance not at 3e-6."""
     weight, means, spread = np.array([0.2, 0.5, 0.3]), 3 * x[:3, :2], covariance(2, 3)
-    mean, cov = gaussian.mixture(means, spread, weight)
+    mean, cov = densities.mixture(means, spread, weight)
     rng = np.random.default_rng(22)
     part = rng.choice(3, size=200_000, p=weight)
     noise = rng.standard_normal((len(part), 2, 1))
@@ -87,7 +87,7 @@ def test_results_are_symmetric_whatever_rounding_the_arguments_have_across_the_d
     _, predicted = gaussian.predict(x, P + lopsided, F, Q + lopsided)
     _, updated, S = gaussian.update(x, P + lopsided, innovation, H, R + lopsided[:m, :m])
     _, smoothed = gaussian.smooth(x, P + lopsided, F, Q + lopsided, x, P + lopsided)
-    for matrix in (predicted, updated, S, smoothed, gaussian.squared(F)):
+    for matrix in (predicted, updated, S, smoothed, covariances.squared(F)):
         np.testing.assert_array_equal(matrix, matrix.mT)
 
 
@@ -97,9 +97,9 @@ def test_a_square_root_is_one_also_of_what_is_singular():
     turn = np.linalg.qr(RNG.standard_normal((n, n)))[0]
     tilted = turn @ np.diag([3.0, 1.0, 0.0, 0.0]) @ turn.T
     for matrix in (P, flat, (tilted + tilted.T) / 2, np.zeros((n, n)), np.stack([P[0], flat])):
-        root = gaussian.square_root(matrix)
+        root = covariances.square_root(matrix)
         np.testing.assert_allclose(root @ root.mT, matrix, rtol=0, atol=1e-14 * 50)
-    assert (gaussian.square_root(flat)[1] == 0).all()  # known exactly stays known exactly
+    assert (covariances.square_root(flat)[1] == 0).all()  # known exactly stays known exactly
 
 
 def test_solving_with_a_singular_matrix_solves_what_can_be_solved():
@@ -107,12 +107,14 @@ def test_solving_with_a_singular_matrix_solves_what_can_be_solved():
     singular = turn @ np.diag([3.0, 1.0, 0.5, 0.0]) @ turn.T
     singular = (singular + singular.T) / 2
     b = singular @ RNG.standard_normal((n, 2))
-    solution = gaussian.solve(singular, b)
+    solution = covariances.solve(singular, b)
     np.testing.assert_allclose(singular @ solution, b, rtol=0, atol=1e-13)
     units = np.diag([1.0, 1e-6, 1e3, 1e6])
-    scaled = gaussian.solve(units @ singular @ units, units @ b)
+    scaled = covariances.solve(units @ singular @ units, units @ b)
     np.testing.assert_allclose(units @ scaled, solution, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(gaussian.solve(P, np.eye(n)), np.linalg.inv(P), rtol=0, atol=1e-10)
+    np.testing.assert_allclose(
+        covariances.solve(P, np.eye(n)), np.linalg.inv(P), rtol=0, atol=1e-10
+    )
 
 
 def test_what_is_not_finite_stays_so_and_does_not_reach_the_other_runs():

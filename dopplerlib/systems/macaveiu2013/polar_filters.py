@@ -7,7 +7,7 @@ import numpy as np
 from ... import _checks
 from ..._hints import Runs, checked, exactly, shaped
 from ..._typing import FloatArray
-from ...estimation import gaussian, recursion
+from ...estimation import densities, gaussian, recursion
 from ...estimation.extended_update import linearized
 from ...estimation.track import Track
 from ...model.motion import ncv_transition
@@ -216,7 +216,7 @@ def _track(z, s, begin, model):
         x, P = gaussian.predict(*state, F, Q)
         innovation, H, R = model(x, z[:, k])
         x, P, S = gaussian.update(x, P, innovation, H, R)
-        return (x, P), (x, P, gaussian.quadratic_form(innovation, S))
+        return (x, P), (x, P, densities.quadratic_form(innovation, S))
 
     first = (*begin, np.full(len(z), np.nan))
     x, P, score = recursion.scan(step, begin, range(1, z.shape[1]), axis=1, first=first)
