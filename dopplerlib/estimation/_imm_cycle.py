@@ -24,16 +24,22 @@ def cycle(k, state, models, rules, log_transition):
     weight = probabilities(joint, axis=-2)
 
     common = [_common(model, x, P) for model, x, P in zip(models, xs, Ps, strict=True)]
-    after, densities = [], []
-    for j, (predict, correct) in enumerate(rules):
+    after = []
+    for j, rule in enumerate(rules):
         parts = [_own(models, i, j, common, xs, Ps) for i in range(len(models))]
-        x, P = predict(k, *_mixture(parts, weight[..., j]))
-        innovation, K, P, S = correct(k, x, P)
-        after.append((gaussian.moved(x, K, innovation), P))
-        densities.append(densities.log_density(innovation, S))
-    log_mode = now + np.stack(densities, axis=-1)
+        after.append(_filtered(k, rule, *_mixture(parts, weight[..., j])))
+    xs, Ps, likelihoods = zip(*after, strict=True)
+    log_mode = now + np.stack(likelihoods, axis=-1)
     log_mode = log_mode - log_mode.max(axis=-1, keepdims=True)
-    return tuple(x for x, _ in after), tuple(P for _, P in after), log_mode
+    return xs, Ps, log_mode
+
+
+def _filtered(k, rule, x, P):
+    """Return the estimate of one model after sample k, and the log likelihood of that sample."""
+    predict, correct = rule
+    x, P = predict(k, x, P)
+    innovation, K, P, S = correct(k, x, P)
+    return gaussian.moved(x, K, innovation), P, densities.log_density(innovation, S)
 
 
 def combined(models, state):

@@ -248,11 +248,11 @@ def _start(models, x0, P0, mode0, batch):
     else:
         x0, P0 = _each_model("x0", x0, models), _each_model("P0", P0, models)
     xs, Ps = [], []
-    for model, x, P in zip(models, x0, P0, strict=True):
+    for model, x, spread in zip(models, x0, P0, strict=True):
         n = model.n
         xs.append(_checks.each_run("x0", _checks.finite("x0", x, (n,)), batch, (n,)))
-        P = _checks.covariance("P0", P, n, definite=False)
-        Ps.append(_checks.each_run("P0", P, batch, (n, n)))
+        spread = _checks.covariance("P0", spread, n, definite=False)
+        Ps.append(_checks.each_run("P0", spread, batch, (n, n)))
     mode0 = _rows("mode0", np.full(M, 1 / M) if mode0 is None else mode0, (M,), 1)
     with np.errstate(divide="ignore"):  # the logarithm of 0 is what it should be
         return tuple(xs), tuple(Ps), np.log(np.broadcast_to(mode0, (*batch, M)))

@@ -136,14 +136,14 @@ class ImmTrack:
         Their covariances, with the spread between the models.
     mode : ndarray, shape (..., K, M)
         Probability of each model.
-    last : ImmState
-        After the last sample, from which `imm_step` goes on.
+    last : ImmState, optional
+        After the last sample, from which `imm_step` goes on; None in a track of other origin.
     """
 
     x: np.ndarray
     P: np.ndarray
     mode: np.ndarray
-    last: ImmState
+    last: ImmState | None = None
 
 
 def _prepared(name: str, model: ImmModel, z: np.ndarray) -> tuple[Predict, Correct]:
