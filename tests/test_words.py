@@ -31,7 +31,7 @@ WORDS = {
     r"^What\b|\b[Ww]hat (a|an|the|is|are|was|were|it|they|of|comes|stands)\b": "a noun as subject",
     r"\bnot to be (seen|known)\b|\bcannot see\b": "unobservable",
     r"\bno sound\b": "not valid",
-    r"\bdie out\b|\bsettles?\b": "stable, converges",
+    r"\bdie out\b|\bsettles\b": "stable, converges",
     r"\bworth\b": "effective sample size",
     r"\bmoments?\b(?! of)": "time",
     r"\bConfidenceInterval (a|states)\b": "estimate",

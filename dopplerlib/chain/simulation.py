@@ -28,7 +28,7 @@ def simulate_baseband(
     faults: bool = True,
     amplitude: Literal["constant", "r^-2"] = "constant",
 ) -> Baseband:
-    """Simulate what the modules of an array record of a target, up to the low-pass.
+    """Simulate the IQ samples of the modules of an array, up to the low-pass filter.
 
     Parameters
     ----------

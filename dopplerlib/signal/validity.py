@@ -225,7 +225,7 @@ def _alive(rows, full_scale, longest_run, false_alarm):
 
 
 def _clipped(counts, chance):
-    """Return which extremes repeat too often: of how many samples have each, and have the next."""
+    """Return which extremes repeat too often, by the counts of each and of its neighbor."""
     a, b = counts[..., 0], counts[..., 1]
     total = np.maximum(a + b, 1)
     share = a / total
