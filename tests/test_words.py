@@ -8,10 +8,14 @@ import ast
 import re
 from pathlib import Path
 
+import nbformat
 import pytest
+
+from tools.notebooks import chapters
 
 ROOT = Path(__file__).resolve().parents[1]
 LIBRARY = ROOT / "dopplerlib"
+PAGES = chapters() + sorted((ROOT / "book").glob("*.md"))
 PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "replication")
 
 WORDS = {
@@ -25,10 +29,10 @@ WORDS = {
     r"\bright angles\b": "orthogonal",
     r"\bbends?\b": "curvature",
     r"\bwhoever\b|\bnobody\b": "a subject",
-    r"\b(is|are|was|be) (told|said)\b|\btells?\b": "states, reports, reads",
+    r"\b(is|are|was|be) (told|said)\b|\btells\b": "states, reports, reads",
     r"\b(so|how) (well|good)\b": "accuracy",
     r"\bhow (often|many|far|much|long)\b": "number, fraction, distance, length",
-    r"^What\b|\b[Ww]hat (a|an|the|is|are|was|were|it|they|of|comes|stands)\b": "a noun as subject",
+    r"^What\b|\b[Ww]hat (a|an|the|is|are|was|were|it|of|comes|stands)\b": "a noun as subject",
     r"\bnot to be (seen|known)\b|\bcannot see\b": "unobservable",
     r"\bno sound\b": "not valid",
     r"\bdie out\b|\bsettles\b": "stable, converges",
@@ -72,6 +76,23 @@ def test_the_library_speaks_as_the_field_does(package, texts):
         if (words := found(text))
     ]
     assert strange == [], "\n".join(strange)
+
+
+def titles_and_captions(path):
+    """Yield the headings of a page, and the captions of its figures."""
+    if path.suffix == ".md":
+        yield from re.findall(r"^#+ (.+)$", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+        return
+    for cell in nbformat.read(path, as_version=4).cells:
+        if cell.cell_type == "markdown":
+            yield from re.findall(r"^#+ (.+)$", cell.source, flags=re.MULTILINE)
+        yield cell.metadata.get("mystnb", {}).get("figure", {}).get("caption", "")
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
+def test_titles_and_captions_do_so_too(path):
+    strange = [(text, words) for text in titles_and_captions(path) if (words := found(text))]
+    assert strange == []
 
 
 @pytest.mark.parametrize(
