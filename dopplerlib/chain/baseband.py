@@ -41,8 +41,7 @@ class Baseband:
     Raises
     ------
     ValueError
-        If a field is not of the kind described. Whether `x` and `valid` fit is checked by
-        `samples`.
+        If a field is not of the kind described, or `x` is not finite where `valid` is True.
 
     Examples
     --------
@@ -64,7 +63,7 @@ class Baseband:
         """Check the fields."""
         _checks.instance("array", self.array, RadarArray)
         for name, value in (
-            ("x", _checks.numbers("x", self.x)),
+            ("x", _checks.numbers("x", self.x, (len(self.array), None))),
             ("fs", _checks.moderate_number("fs", self.fs)),
             ("delay", _checks.one_number("delay", self.delay, _checks.moderate)),
             ("first", _checks.one_number("first", self.first, _checks.moderate)),
@@ -73,6 +72,7 @@ class Baseband:
             object.__setattr__(self, name, value)
         if self.valid is not None:
             object.__setattr__(self, "valid", _checks.booleans("valid", self.valid))
+            known_samples("x", self.x, self.valid, (None,))
 
     @classmethod
     def from_samples(
@@ -192,12 +192,6 @@ class Baseband:
         valid : ndarray of bool, shape (..., N, n)
             False throughout for a module whose I and Q are proportional: they tell no direction.
 
-        Raises
-        ------
-        ValueError
-            If `x` is not finite where `valid` is True, or has not N sensors; or if `valid` does not
-            fit.
-
         Examples
         --------
         >>> x = np.random.default_rng(1).standard_normal((2, 50, 2)) @ [1, 1j]
@@ -205,9 +199,8 @@ class Baseband:
         >>> Baseband(x, 1e3, RadarArray([[0, -1, 0], [0, 1, 0]])).samples()[1].all(axis=-1)
         array([ True, False])
         """
-        shape = (len(self.array), None)
         valid = valid_samples(self.x) if self.valid is None else self.valid
-        x, valid = known_samples("iq.x", self.x, valid, shape)
+        x, valid = known_samples("x", self.x, valid, (None,))
         known = valid & branches_differ(remove_mean(x, valid), valid)[..., None]
         return np.where(known, x, 0.0), known
 

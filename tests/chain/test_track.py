@@ -210,7 +210,7 @@ def test_what_makes_no_sense_is_refused_by_name(room):
     ]:
         with pytest.raises(ValueError, match=message):
             track_iq(**{"iq": iq, "box": BOX} | SETTINGS | change)
-    line = replace(iq, array=RadarArray(PLACES[:2], iq.array.wavelength), x=iq.x[:2])
-    line = replace(line, valid=iq.valid[:2])
+    two = RadarArray(PLACES[:2], iq.array.wavelength)
+    line = replace(iq, array=two, x=iq.x[:2], valid=iq.valid[:2])
     with pytest.raises(ValueError, match="start must hold windows side by side for 6 unknowns"):
         track_iq(line, ([0, 0, 0], [6, 5, 3]), **SETTINGS | {"start": 0.12})

@@ -180,8 +180,8 @@ def test_samples_that_are_not_sound_are_refused_by_name(iq):
     x[0, 3, 5] = np.nan
     every = np.ones(x.shape, dtype=bool)
     for changes, message in [
-        ({"x": x, "valid": every}, r"iq.x must be finite, got .*nan.* at index \(0, 3, 5\)"),
-        ({"x": x[:, :5]}, r"iq.x must have shape \(\.\.\., 6, any\), got \(1, 5, "),
+        ({"x": x, "valid": every}, r"^x must be finite, got .*nan.* at index \(0, 3, 5\)"),
+        ({"x": x[:, :5]}, r"^x must have shape \(\.\.\., 6, any\), got \(1, 5, "),
         ({"x": "text"}, "x must be an array of numbers, got 'text'"),
         ({"x": x, "valid": every[..., 1:]}, "valid must have a shape that broadcasts to"),
         ({"x": x, "valid": every * 1.0}, "valid must be an array of booleans"),
