@@ -238,7 +238,12 @@ def increasing_pair(name, value):
 
 def one_of(name, value, choices):
     """Return `value`, or raise if it is none of `choices`."""
-    if not any(isinstance(value, type(choice)) and value == choice for choice in choices):
+
+    def is_it(choice):
+        alike = is_whole(value) if is_whole(choice) else isinstance(value, type(choice))
+        return alike and value == choice
+
+    if not any(map(is_it, choices)):
         raise ValueError(
             f"{name} must be one of {', '.join(map(repr, choices))}, got {_short(value)}"
         )

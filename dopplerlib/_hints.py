@@ -10,6 +10,7 @@ Its body gets what the checks return: an array for an array_like, a tuple for an
 """
 
 import inspect
+import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial, wraps
 from types import NoneType, UnionType
@@ -44,7 +45,8 @@ def checked(function: _T) -> _T:
     Raises
     ------
     ValueError
-        From the decorated function: "<argument> must <expectation>, got <value>".
+        From the decorated function: "<argument> must <expectation>, got <value>". An error from
+        deeper down, about a name that the caller does not know, is preceded by its arguments.
     """
     if isinstance(function, type):
         function.__init__ = checked(function.__init__)
@@ -68,7 +70,13 @@ def checked(function: _T) -> _T:
         for name, check in checks().items():
             if name in arguments:
                 arguments[name] = check(name, arguments[name])
-        return function(*bound.args, **bound.kwargs)
+        try:
+            return function(*bound.args, **bound.kwargs)
+        except ValueError as error:
+            first = re.match(r"\w+", str(error))
+            if first is None or first[0] in signature.parameters or "self" in arguments:
+                raise
+            raise ValueError(f"{', '.join(arguments)} must suit each other: {error}") from error
 
     return cast(_T, call)
 

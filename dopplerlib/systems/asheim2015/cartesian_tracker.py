@@ -235,7 +235,7 @@ def _gated(x, P, z, sensor, settings):
     """Update with one radar's detection where the gate lets it through."""
     predicted = range_rate(x, sensor[None])[:, 0]
     H = range_rate_jacobian(x, sensor[None])[:, 0]
-    R = settings.R(predicted[:, 0], "records")[..., None] * np.eye(2)
+    R = settings.R(predicted[:, 0])[..., None] * np.eye(2)
     nu = z - predicted
     xu, Pu, S = gaussian.update(x, P, nu, H, R)
     # The quadratic form of the inverse of S, written out: a solver takes longer.

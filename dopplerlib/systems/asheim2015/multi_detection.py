@@ -62,7 +62,7 @@ def managed_tracks(
         settings.Q,
         lambda x: x,
         lambda x: np.eye(2),
-        lambda x: settings.R(x[..., 0], "detections")[..., None] * np.eye(2),
+        lambda x: settings.R(x[..., 0])[..., None] * np.eye(2),
         lambda z: (z, np.broadcast_to(settings.P0, (len(z), 2, 2))),
         TrackManager(s.hits, s.window, s.delete_after),
         gate_probability=settings.gate_probability,
@@ -191,7 +191,7 @@ def pda_ranges(
 
     def step(k, state):
         x, P = gaussian.predict(*state, F, settings.Q)
-        R = settings.R(x[..., 0], "detections")[..., None] * np.eye(2)
+        R = settings.R(x[..., 0])[..., None] * np.eye(2)
         after = pda_update(
             x, P, z[..., k, :, :], np.eye(2), R,
             detection=own.detection, density=density, gate=settings.gate_probability,

@@ -110,7 +110,7 @@ def track_ranges(
 
     def step(k, state):
         x, P = _predicted(*state, settings)
-        R = settings.R(x[..., 0], "detections")
+        R = settings.R(x[..., 0])
         nu = z[..., k, :, :] - x[..., None, :]
         nis, accept = _gate(nu, P, R, settings, m)
         if k == 0:

@@ -17,6 +17,10 @@ from .noise import Law, _near, noise_std, snr
 from .published import reported
 
 
+def _within(name, value, shape=()):
+    return _checks.bounded(name, _checks.finite(name, value, shape), (), 2 * LONGEST)
+
+
 def _short(name, value):
     return _checks.bounded(name, _checks.finite(name, value), (), 20.0)
 
@@ -27,7 +31,7 @@ def _baseline(name, value):
 
 Baseline = Annotated[float, _baseline]  # distance of the radars in m
 LONGEST = 100.0  # s: then the person is 14 m away, and what is measured is noise
-Times = Annotated[FloatArray, exactly(None, check=partial(_checks.bounded, most=2 * LONGEST))]
+Times = Annotated[FloatArray, exactly(None, check=_within)]
 Offset = Annotated[float, partial(_checks.one_number, check=partial(_checks.bounded, most=10.0))]
 
 

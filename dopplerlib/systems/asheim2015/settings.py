@@ -8,7 +8,7 @@ from ..._hints import Positive, Probability, Reals, checked, exactly
 from ..._records import record
 from ..._typing import FloatArray
 from ...model.motion import cwna_process_noise
-from .noise import FARTHEST, noise_std
+from .noise import noise_std
 from .published import reported
 
 Pair = Annotated[FloatArray, exactly(2)]
@@ -63,15 +63,11 @@ class FilterSettings:
     gate_probability: Probability
     P0: Symmetric
 
-    def R(self, d: Reals, of: str = "d") -> FloatArray:
-        """Return variances of range and velocity at the ranges `d` (...), shape (..., 2).
-
-        `of` is the argument that an error names if a range is beyond where the law ends.
-        """
+    @checked
+    def R(self, d: Reals) -> FloatArray:
+        """Return variances of range and velocity at the ranges `d` (...), shape (..., 2)."""
         if self.variances is not None:
             return np.broadcast_to(self.variances, (*np.shape(d), 2))
-        if (np.abs(d) > FARTHEST).any():
-            raise ValueError(f"{of} must keep the range within {FARTHEST:g} m, got {np.max(d)}")
         return noise_std(d) ** 2 + np.square(self.floor)
 
 

@@ -17,7 +17,7 @@ from .settings import AutomotiveSettings, automotive_settings
 from .truth import Truth
 
 SIDEWAYS = 3.0  # m/s: deviation of the velocity across the line of sight before it is known; ours
-Record = Annotated[FloatArray, exactly(None, None, 3, check=_checks.measured)]
+Record = Annotated[FloatArray, exactly(None, None, 3, check=_checks.bounded)]
 
 
 def polar_noise() -> FloatArray:

@@ -185,6 +185,7 @@ def study_outcome(
     Returns
     -------
     SchemeOutcome
+        Its error is NaN where the target has no track.
 
     Raises
     ------

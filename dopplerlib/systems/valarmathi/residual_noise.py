@@ -11,6 +11,7 @@ from .published import reported
 
 
 @checked
+@_checks.quiet
 def residual_variance(
     residual: Annotated[FloatArray, shaped(None)], HPH: Reals, sign: Literal[-1, 1] = -1
 ) -> FloatArray:
@@ -56,6 +57,7 @@ def residual_variance(
 
 
 @checked
+@_checks.quiet
 def updated_residual(
     innovation: Reals, S: Annotated[FloatArray, _checks.positive], R: Positive
 ) -> tuple[FloatArray, FloatArray]:

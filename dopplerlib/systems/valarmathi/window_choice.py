@@ -19,8 +19,10 @@ def _rising(name, value):
 
 def _lengths(name, value, least=3):
     array = _checks.moderate(name, value, (None,))
-    if array.ndim != 1 or not len(array) or (array % 1 != 0).any() or array.min() < least:
-        raise ValueError(f"{name} must be whole numbers of at least {least}, got {array.tolist()}")
+    good = array.ndim == 1 and len(array) and (array % 1 == 0).all()
+    if not (good and least <= array.min() and array.max() <= 1e6):
+        wanted = f"a row of whole numbers from {least} to a million"
+        raise ValueError(f"{name} must be {wanted}, got {array.tolist()}")
     return array.astype(int)
 
 

@@ -50,7 +50,7 @@ class FilteredDoppler:
     windows: Lengths
     first: Index
     v: Array
-    snr_db: Array
+    snr_db: Annotated[FloatArray, _checks.decibels]
 
     def __post_init__(self):
         """Check that the fields belong together."""
