@@ -143,7 +143,7 @@ class Baseband:
         Parameters
         ----------
         recording : Recording
-            Samples of N sensors. What it says of their validity is kept.
+            Samples of N sensors. Their validity mask is kept.
         array : RadarArray
             Where these sensors are, in the same order, with the recording's wavelength.
         factor, taps : int

@@ -52,7 +52,7 @@ class IqTrack:
     degrees : ndarray, shape (...)
         Degrees of freedom of this chi-square: shifts that are there less unknowns.
     velocity_random_walk : float
-        Standard deviation in m/s of what a second does to each velocity, see `track_iq`.
+        Standard deviation in m/s of the random walk of each velocity in a second, see `track_iq`.
 
     Raises
     ------
@@ -242,11 +242,11 @@ def track_iq(
     balance : bool
         Whether the branches are made equal, see `correct_iq_imbalance`.
     estimator : callable
-        What finds the frequency of a window, see `sliding_doppler`.
+        Frequency estimator of a window, see `sliding_doppler`.
     variance_inflation : float
         Factor on the variances of the shifts.
     least_snr : float
-        What the measured signal-to-noise ratio of a whole window must be for its shift to be used.
+        Least measured signal-to-noise ratio of a whole window for its shift to be used.
     search : {"parts", "whole"}
         Where hypotheses about the start come from. "parts": the likeliest state in each part of
         the box between the planes through the middle of the array. "whole": the likeliest and the

@@ -75,7 +75,7 @@ def _innovation_covariance(sensor, lanes, width, variance, S):
 
 @_inline
 def _leave_out_missing(sensor, lanes, lane):
-    """Give the missing sensors of one lane what changes nothing in the update."""
+    """Give the missing sensors of one lane values that change nothing in the update."""
     for n in range(len(sensor)):
         if np.isnan(sensor[n, kernel.MEASUREMENT * lanes + lane]):
             sensor[n, kernel.VARIANCE * lanes + lane] = 1.0

@@ -73,7 +73,7 @@ def log_density(v: FloatArray, S: FloatArray) -> FloatArray:
     Returns
     -------
     ndarray, shape (...)
-        Zero where all components are NaN: what is not measured speaks for no model.
+        Zero where all components are NaN: a missing measurement favors no model.
 
     Raises
     ------

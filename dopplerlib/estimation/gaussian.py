@@ -218,7 +218,7 @@ def smooth(
 def _weighed(L, HL, R, there):
     """Return gain, S, and R in which the noise of missing components has variance 1.
 
-    What is missing measures nothing: its rows of H L are zero, and so are its columns of the gain.
+    Missing components measure nothing: their rows of H L are zero, and their columns of the gain.
     """
     S = used = squared(HL, R)
     if not np.all(there):

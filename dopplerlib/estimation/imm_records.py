@@ -152,7 +152,7 @@ def _prepared(name: str, model: ImmModel, z: np.ndarray) -> tuple[Predict, Corre
     Parameters
     ----------
     name : str
-        What errors call the model.
+        Name of the model in errors.
     model : ImmModel
     z : ndarray, shape (..., K, m)
         Checked measurements.

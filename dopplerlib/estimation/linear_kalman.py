@@ -155,7 +155,7 @@ def kf(
     Returns
     -------
     Track
-        Leading axes are those of `z`. What is missing is treated as by `ekf`: the components that
+        Leading axes are those of `z`. Missing values are treated as by `ekf`: the components that
         are there update alone, and NIS is theirs.
 
     Raises

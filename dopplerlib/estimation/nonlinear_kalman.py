@@ -206,7 +206,7 @@ def ukf(
 
 
 def _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability):
-    """Return what both filters are given, checked."""
+    """Return the checked arguments of both filters."""
     x0 = _checks.finite("x0", x0, (None,))
     n = x0.shape[-1]
     P0 = _checks.covariance("P0", P0, n, definite=False)

@@ -23,7 +23,7 @@ class RadialVelocity:
     R : ndarray, shape (..., 1, 1)
         Variance of the measurement and of the neglected second order together.
     predicted : ndarray, shape (..., 1)
-        What is expected to be measured, u.v plus the trace of C.
+        Expected measurement, u.v plus the trace of C.
     """
 
     H: np.ndarray

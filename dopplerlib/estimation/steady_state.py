@@ -92,7 +92,7 @@ def steady_state_lag(F: ArrayLike, H: ArrayLike, K: ArrayLike, push: ArrayLike) 
     K : array_like, shape (n, m)
         Gain.
     push : array_like, shape (..., n)
-        What the truth has in addition to `F` in every step: for a constant acceleration a and a
+        Push of the truth in addition to `F` in every step: for a constant acceleration a and a
         filter of constant velocity, [a T^2 / 2, a T] on each axis.
 
     Returns

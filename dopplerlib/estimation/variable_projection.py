@@ -32,7 +32,7 @@ def velocity_given_position(
     v : ndarray, shape (..., 3)
         Velocities in m/s; the shortest one where several are equally good.
     cost : ndarray, shape (...)
-        What is left of the misfit: the sum of the squared residuals over their variances.
+        Remaining misfit: the sum of the squared residuals over their variances.
 
     Raises
     ------

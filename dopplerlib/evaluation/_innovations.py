@@ -23,7 +23,7 @@ def measured(innovation, S, record=False, of=""):
     record : bool
         Whether there is an axis of time, which S must have too.
     of : str
-        What stands before the names of both in an error.
+        Prefix of both names in an error.
 
     Returns
     -------

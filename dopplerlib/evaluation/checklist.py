@@ -30,14 +30,14 @@ class Check:
     Attributes
     ----------
     name : str
-        What is checked.
+        Name of the check.
     kind : {"exact", "statistical"}
         Whether `value` is a difference that should be at most `limit`, or a p-value that should
         be at least that: the probability with which the check fails a filter that is right.
     value : float
-        What came out.
+        Difference, or p-value.
     limit : float
-        What was allowed.
+        Bound on `value`.
 
     Raises
     ------

@@ -29,7 +29,7 @@ class Table:
         whole number has no decimals, unless a format is given. A format that begins with "±"
         writes an interval as its value ± half its length, which else is "2.5 (1.0 to 4.0)".
     corner : str
-        What the labels of the rows are.
+        Head of the column of labels.
 
     Raises
     ------

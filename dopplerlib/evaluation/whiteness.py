@@ -61,7 +61,7 @@ def innovation_mean(innovation: ArrayLike, S: ArrayLike) -> tuple[FloatArray, Fl
 
     Examples
     --------
-    A hundred values of variance 1 that are all 0.2: twice what chance gives.
+    A hundred values of variance 1 that are all 0.2: twice the standard error.
 
     >>> mean, standard_error = innovation_mean(np.full((100, 1), 0.2), np.ones((100, 1, 1)))
     >>> round(float(mean[0]), 3), round(float(standard_error[0]), 3)

@@ -20,7 +20,7 @@ class Claim:
     where : str
         Section, equation, figure or table.
     statement : str
-        What is claimed, in our words.
+        The claim, in our words.
     kind : {"deterministic", "random", "relation"}
         A number that follows from what is given; the outcome of one random run; or a statement
         that a quantity lies above or below a limit.
@@ -40,7 +40,7 @@ class Claim:
     relation : {"<", "<=", ">", ">="}, optional
         How the quantity lies to the limit.
     note : str
-        What contradicts it, or what is missing.
+        The contradiction, or the missing part.
     surrogate : str
         Simulation that stands in for data which are not published, such as "a simulated walk". The
         verdict is then one on the simulation, and is counted apart. "" if there is none.

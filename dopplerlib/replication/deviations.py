@@ -22,9 +22,9 @@ class Deviation:
         Something is not stated; two statements do not agree; one cannot be meant as it stands; or
         it is clear, and something else is done here or beside it.
     document : str
-        What the document says, in our words.
+        The statement of the document, in our words.
     choice : str
-        What is done here.
+        Our choice.
     page, cell : str
         Chapter and cell where it matters.
     claims : tuple of str

@@ -18,7 +18,7 @@ class Document:
     name : str
         Its name, that of its folder in ``data/``.
     claims : tuple of Claim
-        What it claims.
+        Its claims.
     deviations : Deviations
         Where it leaves something open or contradicts itself.
 

@@ -56,7 +56,7 @@ def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
     Parameters
     ----------
     claim : Claim
-        What is claimed.
+        The claim.
     evidence : float, array_like, ConfidenceInterval, Draws or Readings
         Our number for a deterministic claim (as many as are published); a `ConfidenceInterval`, or
         a float without uncertainty, for a relation; `Draws` for a random run. `Readings` holds one

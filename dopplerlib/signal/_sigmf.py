@@ -40,12 +40,12 @@ def write_sigmf(
         Name of the pair, without ``.sigmf-meta`` and ``.sigmf-data``. Older files of that name
         are replaced once the new ones are complete.
     recording : Recording
-        What to write.
+        Recording to write.
     samples : {"complex128", "complex64", "int16"}
         How a sample is stored: without loss, in half the space, or as a converter of 16 bits
         would give it, with 1 as the largest value.
     description : str
-        A sentence for whoever finds the file.
+        Description that is written to the metadata.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def read_sigmf(
     carrier : float, optional
         Carrier frequency in Hz of a recording whose metadata have none.
     layout : {"iq", "qi", "real"}, optional
-        What the numbers are: I and Q of each sensor in turn, Q and I in turn, or one real channel
+        Order of the numbers: I and Q of each sensor in turn, Q and I in turn, or one real channel
         a sensor. If None, what the metadata say: "iq" if the samples are complex, "real" if they
         are not, unless pairs of them turn together like I and Q.
     first, count : int, optional

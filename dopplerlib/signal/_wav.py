@@ -29,7 +29,7 @@ def write_wav(path: Path, recording: Recording, samples: str = "float64") -> pat
     path : path-like
         Name of the file. An older one is replaced once the new one is complete.
     recording : Recording
-        What to write. WAV has no place for the carrier, the start and what is valid: keep them
+        Recording to write. WAV has no place for the carrier, the start and the validity: keep them
         elsewhere, or use `write_sigmf`.
     samples : {"float64", "float32", "int32", "int16"}
         How a value is stored: without loss, which few programs open; in half the space; or as a
@@ -97,7 +97,7 @@ def read_wav(
         Time of the first sample, with a time zone: one for all files, or one for each. Files that
         start at different times are aligned, see `align`.
     layout : {"iq", "qi", "real"}, optional
-        What the channels are: I and Q of each sensor in turn, Q and I in turn, or one real channel
+        Order of the channels: I and Q of each sensor in turn, Q and I in turn, or one real channel
         a sensor. If None, it is "iq", unless the samples say otherwise.
     first, count : int, optional
         Which samples to read, of those that all files have in common: `count` samples from sample

@@ -38,7 +38,7 @@ def lowpass(x, fs, cutoff, taps, valid=None):
     y : ndarray of complex, shape (..., n)
         The first ``taps - 1`` samples come from a filter that is still filling.
     delay : float
-        Group delay in s: what y shows at a time t happened at t - delay.
+        Group delay in s: y at a time t shows the signal at t - delay.
     valid : ndarray of bool, shape (..., n)
         Only if `valid` was given: which of y are made of valid samples alone. False for the length
         of the filter after each one that is not, and while it is filling.
@@ -109,7 +109,7 @@ def lowpass_decimate(x, fs, factor, taps=None, valid=None):
     fs_out : float
         New sampling rate in Hz.
     delay : float
-        Group delay in s: y[m] shows what happened at m / fs_out - delay.
+        Group delay in s: y[m] shows the signal at m / fs_out - delay.
     valid : ndarray of bool, shape (..., ceil(n / factor))
         Only if `valid` was given: which of y are made of valid samples alone.
 

@@ -130,7 +130,7 @@ def known_samples(name, x, valid, shape):
     Parameters
     ----------
     name : str
-        What the samples are called in an error.
+        Name of the samples in an error.
     x : array_like of complex, shape (...)
         Samples; where `valid` is False they may be anything.
     valid : array_like of bool, broadcast to (...), or None
@@ -269,7 +269,7 @@ def _longest_natural(length, tenth, noise, step, chance):
 
 
 def _least_natural(runs, tenth, noise, step, chance):
-    """Return what `_longest_natural` gives at least to so many runs, whatever their order is."""
+    """Return a lower limit of `_longest_natural` for a number of runs in any order."""
     rarest = 1 / (np.minimum(runs, _NEIGHBORS) + _CHANGES + 1)
     return _by_odds(rarest, runs, tenth, noise, step, chance)
 

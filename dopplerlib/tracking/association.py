@@ -103,7 +103,7 @@ def gnn_assign(cost: ArrayLike, gate: float) -> IntArray:
     cost : array_like, shape (tracks, detections)
         Cost of each pair, for example its NIS; NaN or infinite for one that is out of the question.
     gate : float
-        Largest cost of a pair that is allowed, and what a track without a detection costs.
+        Largest allowed cost of a pair, and the cost of a track without a detection.
 
     Returns
     -------

@@ -78,7 +78,7 @@ def fuse_state_vectors(
 
 
 def _independent(x1, P1, x2, P2):
-    """Return the fusion of independent estimates; what both know exactly is that of the first."""
+    """Return the fusion of independent estimates; components that both know exactly stay."""
     W = covariances.solve(P1 + P2, P1).mT
     A = np.eye(x1.shape[-1]) - W
     parts = np.broadcast_arrays(A @ covariances.square_root(P1), W @ covariances.square_root(P2))
@@ -240,8 +240,8 @@ def fuse_measurements(
 
     Notes
     -----
-    Bar-Shalom, Li and Kirubarajan (2001). What errors of filters have in common, errors of
-    measurements have not.
+    Bar-Shalom, Li and Kirubarajan (2001). Measurement errors of two sensors are independent, even
+    where the errors of their filters are correlated.
 
     Examples
     --------

@@ -13,7 +13,7 @@ class TrackLife:
     Attributes
     ----------
     status : {"tentative", "confirmed", "deleted"}
-        What the track is good for.
+        Status of the track.
     recent : tuple of bool
         Whether it was detected in each of the last scans, up to the window of its manager.
     age : int

@@ -126,7 +126,7 @@ def track_scans(
     Notes
     -----
     The loop of a tracker as Blackman and Popoli (1999) draw it. Confirmed tracks choose first, then
-    tentative ones; what nobody takes starts a track of its own.
+    tentative ones; an unassigned detection starts a track of its own.
 
     Examples
     --------
@@ -219,7 +219,7 @@ def track_scans(
 
 
 def _assigned(assign, cost, gate):
-    """Return what `assign` gives: for each track a detection, none twice, or -1."""
+    """Return the result of `assign`: for each track a detection, none twice, or -1."""
     tracks, detections = cost.shape
     array = np.asarray(_checks.called("assign", assign, cost, gate))
     good = array.dtype.kind in "iu" and array.shape == (tracks,)
