@@ -8,7 +8,6 @@ verdict is not the one on record. Progress goes to standard error. The exit code
 import sys
 from collections import Counter
 from importlib import import_module
-from importlib.util import find_spec
 
 import numpy as np
 
@@ -20,9 +19,8 @@ from tools.command import parser, start
 
 def evidence_of(document, seed):
     """Return the evidence for every claim, by its id, with one draw of all noise."""
-    room = f"dopplerlib.systems.{document}"
-    door = "evidence" if find_spec(f"{room}.evidence") else "claims"
-    return import_module(f"{room}.{door}").evidence(rng=np.random.default_rng(seed))
+    module = import_module(f"dopplerlib.systems.{document}.evidence")
+    return module.evidence(rng=np.random.default_rng(seed))
 
 
 def verdicts(document, seed):

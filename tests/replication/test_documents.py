@@ -88,7 +88,6 @@ def test_scorecards_have_the_same_cells_but_for_name_and_seed():
         cells = code_of(f"scorecard_{name}")
         text = cells["judge"].replace(name, "NAME").replace(", cells=saved_study().cells()", "")
         text = re.sub(r"from \S+ import saved_study\n", "", text)
-        text = text.replace(".claims import evidence", ".evidence import evidence")
         pages.append(cells | {"judge": re.sub(r"default_rng\(\d+\)", "default_rng(SEED)", text)})
     assert pages == pages[:1] * len(pages)
     assert list(pages[0]) == ["judge", "scorecard", "deviations"]
