@@ -1,4 +1,8 @@
-"""The systems of the source documents: one package a document, each with the same doors."""
+"""The systems of the source documents: one package a document, each with the same doors.
+
+Arguments and fields are checked against their hints: what is not of the kind described is a
+ValueError that names it. Docstrings say what else is refused.
+"""
 
 from .._lazy import attach
 

@@ -126,11 +126,6 @@ def table_3_2(
     PositionTrack
         Where the circles do not meet, the scan is left out.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Notes
     -----
     The measurement is [d, alpha] from the origin, with independent noise of fixed size. That is
@@ -183,11 +178,6 @@ def range_and_angle(x: PlaneStates) -> FloatArray:
         In m and rad, zero along +x. They are those of `polar_radar_h` with the axes exchanged,
         whose azimuth is zero along +y.
 
-    Raises
-    ------
-    ValueError
-        See `polar_radar_h`.
-
     Examples
     --------
     >>> range_and_angle([0.0, 2.0, 0.1, 0.1]).round(3).tolist()
@@ -208,11 +198,6 @@ def range_and_angle_jacobian(x: PlaneStates) -> FloatArray:
     Returns
     -------
     ndarray, shape (..., 2, 4)
-
-    Raises
-    ------
-    ValueError
-        See `polar_radar_h`.
 
     Examples
     --------

@@ -46,11 +46,6 @@ def usable_ranges(
     dict of str to ConfidenceInterval
         In m; infinite if the error stays below the limit.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> from dopplerlib.systems.asheim2015 import raw_positions
@@ -94,11 +89,6 @@ def late_radar(
         Root mean square errors in m by tracker, one for each offset, with one scan a second.
         Errors are taken at the time of the second radar's measurement if the tracker knows it,
         and of the first one's if not.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------
@@ -166,11 +156,6 @@ def baseline_sweep(
         Root mean square errors in m by tracker, one for each baseline, with one scan a second and
         "modern" settings.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> found = baseline_sweep([0.6], 2, rng=np.random.default_rng(1), at=5.0)
@@ -222,11 +207,6 @@ def rejected_scans(
     -------
     list of list of ConfidenceInterval
         Fractions of the scans of radar 2 that the gate rejected, for each start and density.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------

@@ -36,11 +36,6 @@ def departure_times(updated: Booleans, time: Times, scans: Count = 10) -> FloatA
     ndarray, shape (...)
         Time of the first of these scans in s; infinite if there is no departure.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> float(departure_times([True, True, False, False], [0.0, 1.0, 2.0, 3.0], scans=2))
@@ -72,11 +67,6 @@ def position_errors(
     -------
     ndarray, shape (..., K)
         In m; NaN where there is no estimate.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------
@@ -136,11 +126,6 @@ def rmse_interval(
     Returns
     -------
     ConfidenceInterval
-
-    Raises
-    ------
-    ValueError
-        See `rmse`.
 
     Examples
     --------
@@ -253,11 +238,6 @@ def usable_interval(
     -------
     ConfidenceInterval
         In m; infinite where the error stays below the limit to the end.
-
-    Raises
-    ------
-    ValueError
-        See `usable_range`.
 
     Examples
     --------

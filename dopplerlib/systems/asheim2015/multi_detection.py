@@ -38,11 +38,6 @@ def managed_tracks(
     list of ManagedTrack
         Those that were ever confirmed.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Notes
     -----
     `track_scans` with a noise that depends on the range, and with `exclusive` starts: a body gives

@@ -1,7 +1,6 @@
 """The noise of one radar: resolutions, signal-to-noise ratio, standard deviations (Chapter 5)."""
 
 from collections.abc import Callable
-from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
@@ -19,7 +18,6 @@ def _near(name, value, shape=()):
     return _checks.bounded(name, _checks.finite(name, value, shape), (), FARTHEST)
 
 
-Near = Annotated[float, partial(_checks.one_number, check=_near)]
 Ranges = Annotated[FloatArray, _near]
 Law = Annotated[Callable[..., Any], _checks.function]  # signal-to-noise ratio in dB of the range
 

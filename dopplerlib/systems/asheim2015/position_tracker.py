@@ -63,11 +63,6 @@ def clipped_bilateration(d1: Array, d2: Array, baseline: Positive) -> tuple[Floa
     valid : ndarray of bool, shape (...)
         Whether the circles met.
 
-    Raises
-    ------
-    ValueError
-        See `bilaterate`.
-
     Notes
     -----
     Åsheim (2015), Eq 5.8 with Appendix A.8, which takes the real part of the root of a negative
@@ -148,11 +143,6 @@ def raw_positions(records: RadarRecords, updated: Used | None = None) -> Positio
     Returns
     -------
     PositionTrack
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------

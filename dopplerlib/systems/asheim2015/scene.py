@@ -369,11 +369,6 @@ def noisy_positions(
     truth, noisy : ndarray, shape (K, 2)
         In m.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> truth, noisy = noisy_positions(straight_track, 5.0, rng=np.random.default_rng(1))

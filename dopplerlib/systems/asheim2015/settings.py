@@ -42,11 +42,6 @@ class FilterSettings:
     P0 : ndarray, shape (2, 2)
         Covariance with which the filter starts.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> filter_settings("code").R(4.0).tolist()

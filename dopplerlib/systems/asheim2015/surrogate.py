@@ -78,11 +78,6 @@ def simulate_walk(
     -------
     SurrogateWalk
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> simulate_walk(2, rng=np.random.default_rng(1), radar_count=1).detections.shape

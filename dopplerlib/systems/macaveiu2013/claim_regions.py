@@ -40,11 +40,6 @@ class PathScores:
     resolution : float
         Range resolution in m, the measure of the claims.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> scores = score_paths(2, rng=np.random.default_rng(1))
@@ -108,11 +103,6 @@ def score_paths(
     Returns
     -------
     PathScores
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------
@@ -203,11 +193,6 @@ def claim_map(
         For each of `CLAIMS` the share of the runs in which it is true, and the ends of its 95 %
         interval.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> rng = np.random.default_rng(1)
@@ -243,11 +228,6 @@ def decided_claims(shares: Reals) -> IntArray:
         1 where the whole interval says so, -1 where it says the contrary, 0 where the runs are too
         few to tell.
 
-    Raises
-    ------
-    ValueError
-        If `shares` is not of the kind described.
-
     Examples
     --------
     >>> decided_claims([[1.0, 0.9, 0.2], [0.95, 0.7, 0.1], [1.0, 0.97, 0.3]]).tolist()
@@ -276,11 +256,6 @@ def claim_borders(
     list of tuple (float, float, bool)
         The last value before and the first one after, both decided, and whether the claim holds
         after it.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------
@@ -325,11 +300,6 @@ def claim_borders_along(
     -------
     dict of str to list
         For each of `CLAIMS`, see `claim_borders`.
-
-    Raises
-    ------
-    ValueError
-        See `claim_map`.
 
     Examples
     --------

@@ -56,11 +56,6 @@ def crossing_paths(angle: Real, s: AutomotiveSettings | None = None) -> FloatArr
     -------
     ndarray, shape (2, K, 4)
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> crossing_paths(0.5).shape
@@ -107,11 +102,6 @@ def track_crossing(
     Returns
     -------
     Crossing
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Notes
     -----

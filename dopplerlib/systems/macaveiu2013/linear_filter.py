@@ -37,11 +37,6 @@ class VehicleRuns:
     nis : ndarray, shape (runs, K)
         Normalized innovation squared; NaN at the first sample.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> path = VehiclePath(0, "at rest", [[0.0, 0.0, 5.0, 0.0]] * 20)
@@ -96,11 +91,6 @@ def track_vehicle(
     Returns
     -------
     VehicleRuns
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Notes
     -----
@@ -186,11 +176,6 @@ def tracking_errors(
     ndarray, shape (paths, runs, K, 4)
         Estimate minus truth, the same as `track_vehicle` gives.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> path = VehiclePath(0, "at rest", [[0.0, 0.0, 5.0, 0.0]] * 20)
@@ -225,11 +210,6 @@ def filter_vehicle(
     -------
     ndarray, shape (..., K, 4)
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> filter_vehicle([[0.0, 0.0, 5.0, 0.0]] * 3)[-1].round(9).tolist()
@@ -263,11 +243,6 @@ def gain_sequence(s: AutomotiveSettings | None = None) -> FloatArray:
     -------
     ndarray, shape (K, 2, 2)
         They do not depend on the data. The first belongs to the start, and is the unit matrix.
-
-    Raises
-    ------
-    ValueError
-        If `s` is not of the kind described.
 
     Notes
     -----

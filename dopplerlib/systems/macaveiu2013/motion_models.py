@@ -36,11 +36,6 @@ def smooth_vehicle(
     -------
     filtered, smoothed : ndarray, shape (runs, K, 4)
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> filtered, smoothed = smooth_vehicle([[[0.0, 0.0, 5.0, 0.0]] * 3])
@@ -77,11 +72,6 @@ def track_accelerating(
     ndarray, shape (runs, K, 4)
         Without the accelerations.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> track_accelerating([[[0.0, 0.0, 5.0, 0.0]] * 3], q=0.1, a_max=1.0).shape
@@ -116,11 +106,6 @@ def track_two_models(
     x : ndarray, shape (runs, K, 4)
     agile : ndarray, shape (runs, K)
         Probability of the second model.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------

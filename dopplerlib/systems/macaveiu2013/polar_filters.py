@@ -88,11 +88,6 @@ def start_polar(
         The velocity across the line of sight is zero, for lack of knowledge.
     P : ndarray, shape (..., 4, 4)
 
-    Raises
-    ------
-    ValueError
-        If `z` is not of the kind described.
-
     Examples
     --------
     >>> x, P = start_polar([5.0, 0.0, 1.0])

@@ -49,11 +49,6 @@ class VehicleScan:
     source : ndarray of int, shape (detections,)
         `TARGET`, `CLUTTER` or `FALSE`; known in a simulation only.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> len(VehicleScan([[5.0, 0.0, 1.0]], [TARGET]).z)
@@ -179,11 +174,6 @@ def is_moving(z: Annotated[FloatArray, shaped(3, check=_checks.measured)]) -> Bo
     ndarray of bool, shape (...)
         False for clutter: whatever has a range rate below that of one resolution cell.
 
-    Raises
-    ------
-    ValueError
-        If `z` is not of the kind described.
-
     Examples
     --------
     >>> is_moving([[5.0, 0.0, 1.0], [5.0, 0.0, 0.1]]).tolist()
@@ -207,11 +197,6 @@ def after_clutter_rule(scans: Iterable[VehicleScan], rule: Rule = "always") -> l
     -------
     list of VehicleScan
         Without what stands still if the rule is for all detections; else as they are.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------
@@ -242,11 +227,6 @@ def group_detections(
         Mean of the detections of each object.
     member : ndarray of int, shape (detections,)
         Object of each detection.
-
-    Raises
-    ------
-    ValueError
-        If `z` is not of the kind described.
 
     Notes
     -----
@@ -296,11 +276,6 @@ def track_objects(
     -------
     list of ManagedTrack
         Their filter is the extended one, on the polar measurements of the objects.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Notes
     -----
@@ -370,11 +345,6 @@ def longest_gap(
     Returns
     -------
     ndarray of int, shape (runs,)
-
-    Raises
-    ------
-    ValueError
-        If `seen` is not of the kind described.
 
     Examples
     --------

@@ -122,11 +122,6 @@ def study_variants(figure: Figure) -> list[str]:
     -------
     list of str
 
-    Raises
-    ------
-    ValueError
-        If `figure` is none of them.
-
     Examples
     --------
     >>> study_variants(7)
@@ -151,11 +146,6 @@ def study_record(figure: Figure, run: Index, variant: Variant = "as in Fig 6") -
     Returns
     -------
     list of VehicleScan
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------

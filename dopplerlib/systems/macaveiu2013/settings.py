@@ -36,11 +36,6 @@ class AutomotiveSettings:
     range_resolution : float
         In m.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> s = automotive_settings()

@@ -36,11 +36,6 @@ def noisy_echoes(
     -------
     ndarray of complex, shape (...)
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> noisy_echoes([1.0, 1j], 60.0, rng=np.random.default_rng(1)).round(2).tolist()

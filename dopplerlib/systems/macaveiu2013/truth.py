@@ -27,11 +27,6 @@ class VehiclePath:
     truth : ndarray, shape (K, 4)
         States [x, v_x, y, v_y] in m and m/s. The radar is at the origin and looks along +y.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> VehiclePath(0, "at rest", [[0.0, 0.0, 5.0, 0.0]]).truth.shape

@@ -51,11 +51,6 @@ class AlgorithmRuns:
         Filters that choose by the fused state: 5.
     delayed : VelocityTrack
         Filters with one window that know its delay: 6.
-
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
     """
 
     path: VelocityPath
@@ -164,11 +159,6 @@ def run_algorithms(
     Returns
     -------
     AlgorithmRuns
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------

@@ -42,11 +42,6 @@ class FusedTrack:
     sample : ndarray of int, shape (K,)
         Numbers of the samples that they belong to.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> FusedTrack(np.zeros((3, 1, 2)), np.eye(2)[None, None], [0]).x.shape
@@ -83,11 +78,6 @@ def merged_doppler(doppler: FilteredDoppler, snr_db: Decibels) -> tuple[Filtered
     variance_ratio : float
         Variance of its measurements over that of one of the two.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> truth, doppler = matched_model(2, 110, 15.0, rng=np.random.default_rng(1))
@@ -122,11 +112,6 @@ def fuse_all(
     -------
     dict of str to FusedTrack
         For each way. The first estimates, up to the first scored sample, are left out.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------
@@ -318,11 +303,6 @@ def ablation(
     dict of str to dict of str to ndarray, shape (runs,)
         By the step, root mean square errors in m/s in the maneuver and at constant velocity, and
         beside each the error of one sensor with a fixed window over it, in the same run.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------

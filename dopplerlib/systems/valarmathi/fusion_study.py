@@ -41,11 +41,6 @@ class FusionStudy:
         Of each run, root mean square errors in m/s of the "whole" record, of the "maneuver" and
         at "constant" velocity; the document's "cee" at the end in percent; and the "delay" in ms.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> measures = {name: np.ones((1, 2, 6, 3)) for name in MEASURES}
@@ -129,11 +124,6 @@ def study_table(seed: Index = SEED) -> WindowTable:
     -------
     WindowTable
 
-    Raises
-    ------
-    ValueError
-        If `seed` is not a whole number.
-
     Examples
     --------
     >>> study_table().best.shape
@@ -169,11 +159,6 @@ def study_cell(
     -------
     AlgorithmRuns
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
@@ -201,11 +186,6 @@ def cell_measures(result: AlgorithmRuns) -> dict[tuple[int, str], FloatArray]:
     -------
     dict of (int, str) to ndarray, shape (runs,)
         By algorithm and measure; see `FusionStudy`.
-
-    Raises
-    ------
-    ValueError
-        If `result` is not of the kind described.
 
     Examples
     --------

@@ -46,11 +46,6 @@ class WindowTable:
     cee : ndarray, shape (A, B, W)
         Their cumulative estimation errors at the end of a record, mean over the runs.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])

@@ -35,11 +35,6 @@ class FilteredDoppler:
     snr_db : ndarray, shape (W, ..., K)
         Signal-to-noise ratios that the spectra show, in dB; -30, the least, where `v` is NaN.
 
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
-
     Examples
     --------
     >>> measured = FilteredDoppler([8], 0, np.full((1, 1, 1, 20), 250.0), np.zeros((1, 1, 1, 20)))
@@ -167,11 +162,6 @@ def measurement_variance(
     -------
     ndarray, shape (...)
         In (m/s)^2.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------

@@ -25,11 +25,6 @@ def evidence(*, rng: np.random.Generator, runs: Runs = 400) -> dict:
     -------
     dict
         Evidence by the id of the claim; that on Chapter 6 is what SIMULATED walks say.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
     """
     simulated, resampled, walking = rng.spawn(3)
     records = simulate_radars(runs, rng=simulated, duration=_ranges.LONG)
