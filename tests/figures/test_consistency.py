@@ -22,8 +22,9 @@ VALUES = {"NIS": RNG.random(4), "NEES": RNG.random(4)}
 AVERAGES = {"NIS": 6 + RNG.normal(size=80) / 10, "NEES": 6 + RNG.normal(size=80)}
 INTERVALS = {"NIS": {"one": (5.8, 6.2)}, "NEES": {"one": (5.8, 6.2), "two": (4.0, 8.4)}}
 NEES, NIS = RNG.uniform(1, 100, (9, 4)), RNG.uniform(1, 10, (9, 4))
+STATES = np.zeros((9, 4, 6)), np.zeros((1, 4, 6, 6))
 RESULTS = {
-    label: Consistency(TIME, None, None, None, factor * NEES, NIS, None)
+    label: Consistency(TIME, np.zeros((4, 6)), *STATES, factor * NEES, NIS, np.zeros(9))
     for label, factor in (("printed", 1), ("repaired", 0.1))
 }
 SPREAD, CLAIMED = np.array([3.0, 2, 1, 1]), {"x": np.ones(4), "y": np.full(4, 0.5)}

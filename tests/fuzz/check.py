@@ -6,7 +6,7 @@ from .run import fuzz
 from .targets import discover
 
 EXAMPLES = 200  # odd calls of each function, the same ones every time
-SECONDS = 2.0  # for those of one function; what takes longer gets fewer of them
+SECONDS = 1.0  # for those of one function; what takes longer gets fewer of them
 
 
 def of_package(package):

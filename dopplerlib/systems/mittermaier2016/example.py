@@ -9,9 +9,9 @@ from ..._hints import Covariance, Runs, States, checked, exactly
 from ..._records import record
 from ..._typing import FloatArray
 from ...estimation.extended_kalman import ekf
-from ...estimation.track import Track
 from ...model.motion import constant_velocity
 from ...model.simulation import simulate
+from .._tracks import Tracks
 from .published import reported
 
 
@@ -34,7 +34,7 @@ class ExampleRuns:
 
     time: Annotated[FloatArray, exactly(None)]
     truth: Annotated[FloatArray, exactly(None, 6)]
-    track: Track
+    track: Tracks
     error: Annotated[FloatArray, exactly(None, None, 3)]
 
 

@@ -53,6 +53,7 @@ def student_jacobian(
 
 
 @checked
+@_checks.quiet
 def student_ekf(
     z: Measurements,
     array: RadarArray,
@@ -121,7 +122,7 @@ def student_ekf(
         S = HP @ H.mT + R
         # One decomposition of S for the gain and for NIS; P and S are symmetric.
         right = np.concatenate([HP, innovation[..., None]], axis=-1)
-        solved = np.linalg.solve(S, right)
+        solved = _solved(S, right, k)
         gain = solved[..., :6].mT
         x = x + (gain @ innovation[..., None])[..., 0]
         A = np.eye(6) - gain @ H
@@ -130,7 +131,18 @@ def student_ekf(
         return (x, P), (x, P, innovation, S, nis)
 
     x, P, innovation, S, nis = recursion.scan(step, (x, P), range(samples), axis=1)
+    _checks.estimates("z, x0, P0, T, sigma_a and sigma_f", x, nis)
     return Track(x, P, innovation, S, nis, np.ones((runs, samples), bool))
+
+
+def _solved(S, right, k):
+    try:
+        return np.linalg.solve(S, right)
+    except np.linalg.LinAlgError:
+        raise ValueError(
+            "P0, T, sigma_a and sigma_f must keep the innovation covariance regular, "
+            f"got a singular one at sample {k}"
+        ) from None
 
 
 def _signs(jacobian):

@@ -11,11 +11,11 @@ from ..._records import record
 from ..._typing import FloatArray
 from ...estimation.extended_kalman import ekf
 from ...estimation.maximum_likelihood import ml_initialize
-from ...estimation.track import Track
 from ...model.doppler import doppler_shift
 from ...model.radar_array import RadarArray
 from ...model.scenario import Scenario
 from ...model.simulation import simulate
+from .._tracks import Tracks
 from .descent import local_start
 from .published import reported
 from .student_filter import Jacobian, student_ekf
@@ -49,7 +49,7 @@ class PostMortem:
     truth: Annotated[FloatArray, exactly(None, 6)]
     true_start: State
     start: Annotated[FloatArray, exactly(None, 6)]
-    track: Track
+    track: Tracks
     position_error: Annotated[FloatArray, exactly(None, None)]
     velocity_error: Annotated[FloatArray, exactly(None, None)]
 

@@ -162,8 +162,9 @@ def test_the_range_claims_are_along_the_line_of_sight():
     x = np.tile(truth, (999, 1, 1))
     x[..., :3] += 0.2 * quantile[:, None, None] * along + across
     P = np.diag([0.01, 0.04, 0.09, 1, 1, 1])[None, None].repeat(2, axis=1)
+    none = np.full((999, 2), np.nan)
     actual, claimed = paper.range_claims(
-        paper.Consistency(np.arange(2.0), truth, x, P, None, None, None)
+        paper.Consistency(np.arange(2.0), truth, x, P, none, none, none[:, 0])
     )
     np.testing.assert_allclose(actual, 0.2, rtol=2e-3)  # 0.6745 and 999 quantiles
     np.testing.assert_allclose(claimed, [np.sqrt(0.36 * 0.01 + 0.64 * 0.04), 0.3], rtol=1e-12)

@@ -4,37 +4,60 @@
 of linearization apart: where the tangent is taken, and how much the world bends away from it.
 """
 
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from .... import _checks
+from ...._hints import (
+    Array,
+    Count,
+    Covariance,
+    Index,
+    Measurements,
+    Positive,
+    Reals,
+    Runs,
+    States,
+    between,
+    checked,
+    exactly,
+    up_to,
+)
 from ...._records import record
+from ...._typing import FloatArray
 from ....estimation import recursion
 from ....estimation.extended_kalman import ekf
 from ....estimation.track import Track
 from ....evaluation.consistency import nees
 from ....model.doppler import doppler_jacobian, doppler_shift
 from ....model.motion import constant_velocity
+from ....model.radar_array import RadarArray
 from ....model.simulation import simulate
 from ..published import reported
 
+Noise = Literal["shared", "per_axis"]
 
+
+@checked
+@_checks.quiet
 def ablated_ekf(
-    z,
-    array,
-    x0,
-    P0,
-    T,
-    sigma_a,
-    sigma_f,
-    noise="shared",
+    z: Measurements,
+    array: RadarArray,
+    x0: States,
+    P0: Covariance,
+    T: Positive,
+    sigma_a: Positive,
+    sigma_f: Positive,
+    noise: Noise = "shared",
     *,
-    path=None,
-    tangent_at="estimate",
-    curvature=1.0,
-    second_order=False,
-):
+    path: Annotated[FloatArray, exactly(None, 6)] | None = None,
+    tangent_at: Literal["estimate", "path"] = "estimate",
+    curvature: Annotated[float, between(0, 1)] = 1.0,
+    second_order: bool = False,
+) -> Track:
     """Track a target like `ekf`, with the linearization under control.
 
     Parameters
@@ -79,19 +102,24 @@ def ablated_ekf(
     With curvature c, tangent H and the path x the predicted measurement is
     c h(x^) + (1 - c) [h(x) + H (x^ - x)]. The filter of second order is that of Jazwinski (1970),
     Section 9.3; its second derivatives are differences of the Jacobian.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray
+    >>> z, x0 = np.full((1, 3, 6), 100.0), [0.8, 0.1, 0.1, -0.7, -0.1, 0.0]
+    >>> ablated_ekf(z, RadarArray.ring(6, 0.2), x0, 0.1 * np.eye(6), 0.001, 0.4, 0.4).x.shape
+    (1, 3, 6)
     """
-    z = _checks.finite("z", z, (None, None, len(array)))
-    x0, P = _checks.finite("x0", x0, (6,)), _checks.covariance("P0", P0, 6)[None]
-    _checks.one_of("tangent_at", tangent_at, ("estimate", "path"))
-    curvature = _checks.one_number("curvature", curvature)
+    _checks.check_shape("z", z, (len(array),))
+    P = _checks.covariance("P0", P0, 6)[None]
     if path is not None:
-        path = _checks.finite("path", path, (z.shape[1], 6))
+        _checks.check_shape("path", path, (z.shape[1], 6))
         shift, slope = doppler_shift(path, array), doppler_jacobian(path, array)
     elif tangent_at == "path" or curvature != 1:
         raise ValueError(f"path must be given with {tangent_at=} and {curvature=}, got None")
     F, Q = constant_velocity(T, sigma_a, noise)
     R = sigma_f**2 * np.eye(len(array))
-    x = np.broadcast_to(x0, (len(z), 6))
+    x = _checks.each_run("x0", x0, (len(z),), (6,))
     eye = np.eye(len(array))
 
     def step(k, state):
@@ -111,7 +139,13 @@ def ablated_ekf(
         # One decomposition of S for the gain and for NIS.
         HP = np.broadcast_to(np.swapaxes(PHt, -1, -2), (*S.shape[:-1], 6))
         both = np.concatenate([HP, np.broadcast_to(eye, S.shape)], axis=-1)
-        solved = np.linalg.solve(S, both)
+        try:
+            solved = np.linalg.solve(S, both)
+        except np.linalg.LinAlgError:
+            raise ValueError(
+                "P0, T, sigma_a and sigma_f must keep the innovation covariance regular, "
+                f"got a singular one at sample {k}"
+            ) from None
         gain, weight = np.swapaxes(solved[..., :6], -1, -2), solved[..., 6:]
         innovation = z[:, k] - predicted
         x = x + _times(gain, innovation)
@@ -122,10 +156,12 @@ def ablated_ekf(
         nis = np.sum(innovation * _times(weight, innovation), axis=-1)
         return (x, P), (x, P, innovation, S, nis)
 
-    track = recursion.scan(step, (x, P), range(z.shape[1]), axis=1)
-    return Track(*track, np.ones(z.shape[:2], bool))
+    x, P, innovation, S, nis = recursion.scan(step, (x, P), range(z.shape[1]), axis=1)
+    _checks.estimates("z, x0, P0, T, sigma_a and sigma_f", x, nis)
+    return Track(x, P, innovation, S, nis, np.ones(z.shape[:2], bool))
 
 
+@checked
 @record
 class Consistency:
     """What many runs of one filter gave, thinned in time.
@@ -148,19 +184,30 @@ class Consistency:
         Average of NIS over all samples of the record, not only those kept.
     """
 
-    time: np.ndarray
-    truth: np.ndarray
-    x: np.ndarray
-    P: np.ndarray
-    nees: np.ndarray
-    nis: np.ndarray
-    nis_average: np.ndarray
+    time: Annotated[FloatArray, exactly(None)]
+    truth: Annotated[FloatArray, exactly(None, 6)]
+    x: Annotated[FloatArray, exactly(None, None, 6)]
+    P: Annotated[FloatArray, exactly(None, None, 6, 6)]
+    nees: Annotated[FloatArray, exactly(None, None, check=_checks.measured)]
+    nis: Annotated[FloatArray, exactly(None, None, check=_checks.measured)]
+    nis_average: Array
 
 
+@checked
 def consistency_runs(
-    runs, *, rng, keep=None, samples=None, start=None, P0=None, noise="shared", sigma_a=None,
-    sigma_f=None, chunk=500, **switches,
-):  # fmt: skip
+    runs: Runs,
+    *,
+    rng: np.random.Generator,
+    keep: Iterable[Index] | None = None,
+    samples: Annotated[int, up_to(100_000)] | None = None,
+    start: States | None = None,
+    P0: Covariance | None = None,
+    noise: Noise = "shared",
+    sigma_a: Positive | None = None,
+    sigma_f: Reals | None = None,
+    chunk: Count = 500,
+    **switches: Any,
+) -> Consistency:
     """Run the simulation example without a gate, and compare its errors with their covariances.
 
     Parameters
@@ -198,13 +245,19 @@ def consistency_runs(
     ------
     ValueError
         If an argument is refused by `simulate`, `ekf` or `ablated_ekf`.
+
+    Examples
+    --------
+    >>> consistency_runs(2, rng=np.random.default_rng(1), samples=20, keep=[0, 19]).nees.shape
+    (2, 2)
     """
     s = reported().scenario
     if samples is not None:
         s = replace(s, samples=samples)
-    runs = _checks.whole_number("runs", runs)
-    keep = np.arange(s.samples) if keep is None else np.asarray(keep)
-    start = _checks.finite("start", reported().table2.x_ml if start is None else start, (6,))
+    keep = np.arange(s.samples) if keep is None else np.array(keep, int)
+    if not keep.size or keep.max() >= s.samples:
+        raise ValueError(f"keep must hold some of the {s.samples} samples, got {keep}")
+    start = reported().table2.x_ml if start is None else start
     F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.broadcast_to(np.linalg.solve(F, start[..., None])[..., 0], (runs, 6))
     settings = (s.P0 if P0 is None else P0, s.T, s.sigma_a if sigma_a is None else sigma_a)
@@ -227,7 +280,7 @@ def consistency_runs(
     return Consistency(s.time[keep], truth[keep], x, P, squared, nis, average)
 
 
-def matched_P0():
+def matched_P0() -> FloatArray:
     """Return a covariance of the start whose size is that of the errors that Table 2 prints.
 
     Returns
@@ -241,7 +294,8 @@ def matched_P0():
     return np.diag(variance)
 
 
-def range_claims(result):
+@checked
+def range_claims(result: Consistency) -> tuple[FloatArray, FloatArray]:
     """Return how far the range is off, and how far the filter says that it is.
 
     Parameters
@@ -257,8 +311,13 @@ def range_claims(result):
         no more than others.
     claimed : ndarray, shape (M,)
         Median over the runs of its standard deviation as the filter believes it, in m.
+
+    Examples
+    --------
+    >>> result = consistency_runs(2, rng=np.random.default_rng(1), samples=20, keep=[0, 19])
+    >>> [one.shape for one in range_claims(result)]
+    [(2,), (2,)]
     """
-    _checks.instance("result", result, Consistency)
     u = result.truth[:, :3] / np.linalg.norm(result.truth[:, :3], axis=-1, keepdims=True)
     error = np.sum((result.x - result.truth)[..., :3] * u, axis=-1)
     variance = np.einsum("mi,rmij,mj->rm", u, result.P[..., :3, :3], u)

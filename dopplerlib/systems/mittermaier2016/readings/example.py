@@ -4,18 +4,25 @@ What the paper leaves open is drawn at random for each run of ours. All runs are
 same few numbers as the published one, and the runs nearest to it are asked what they were made of.
 """
 
+from collections.abc import Iterable
 from itertools import product
+from typing import Annotated, Any
 
 import numpy as np
 
 from .... import _checks
+from ...._hints import Booleans, Count, Index, Runs, checked, exactly, shaped
 from ...._records import record
+from ...._typing import FloatArray, IntArray
 from ....estimation.extended_kalman import ekf
 from ....evaluation.consistency import chi2_interval
-from ....evaluation.intervals import proportion_interval
+from ....evaluation.intervals import ConfidenceInterval, proportion_interval
 from ....model.motion import constant_velocity
 from ....model.simulation import simulate
 from ..published import reported
+
+Errors = Annotated[FloatArray, shaped(1001, 3, check=_checks.measured)]
+Nis = Annotated[FloatArray, shaped(1001)]
 
 # Samples over which errors are averaged: in all of them the drawn ones are known.
 WINDOWS = ((7, 14), (50, 150), (200, 300), (450, 550), (700, 800), (950, 1001))
@@ -37,6 +44,7 @@ OPTIONS = {
 }  # fmt: skip
 
 
+@checked
 @record
 class ExampleReadings:
     """Runs of many readings of the simulation example, described by a few numbers.
@@ -51,11 +59,14 @@ class ExampleReadings:
         The same of the published run.
     """
 
-    option: dict
-    summary: np.ndarray
-    published: np.ndarray
+    option: dict[str, np.ndarray]
+    summary: Annotated[FloatArray, exactly(None, len(SUMMARIES))]
+    published: Annotated[FloatArray, exactly(len(SUMMARIES))]
 
-    def nearest(self, count, *, decorrelate=True, only=None):
+    @checked
+    def nearest(
+        self, count: Count, *, decorrelate: bool = True, only: Iterable[Index] | None = None
+    ) -> IntArray:
         """Return the numbers of the `count` runs nearest to the published one.
 
         Every summary is first turned into a normal score, by its rank among all runs and the
@@ -87,7 +98,8 @@ class ExampleReadings:
             away = away @ axes / np.sqrt(np.maximum(size, 0.01))
         return np.argsort(np.sum(away**2, axis=1))[:count]
 
-    def shares(self, count, **how):
+    @checked
+    def shares(self, count: Count, **how: Any) -> dict[str, dict[str, ConfidenceInterval]]:
         """Return the share of every option among the nearest runs.
 
         Parameters
@@ -112,7 +124,8 @@ class ExampleReadings:
         }
 
 
-def ruled_out(shares):
+@checked
+def ruled_out(shares: dict[str, dict[str, ConfidenceInterval]]) -> set[tuple[str, str]]:
     """Return the answers that another one beats by ten to one, on the whole of both intervals.
 
     Parameters
@@ -133,7 +146,8 @@ def ruled_out(shares):
     }
 
 
-def example_readings(runs, *, rng):
+@checked
+def example_readings(runs: Runs, *, rng: np.random.Generator) -> ExampleReadings:
     """Run the simulation example with everything that the paper leaves open drawn at random.
 
     The gate is the two-sided one, which the figure itself shows.
@@ -155,7 +169,6 @@ def example_readings(runs, *, rng):
     ValueError
         If `runs` is smaller than 15 or not a whole number, or `rng` is not a generator.
     """
-    _checks.generator("rng", rng)
     groups = list(product(range(5), range(3)))
     each = _checks.whole_number("runs", runs, least=len(groups)) // len(groups)
     s, drawn = reported().scenario, reported().figure6
@@ -182,7 +195,8 @@ def example_readings(runs, *, rng):
     return ExampleReadings(chosen, np.concatenate(summary), published)
 
 
-def example_summary(error, nis, skipped):
+@checked
+def example_summary(error: Errors, nis: Nis, skipped: Booleans) -> FloatArray:
     """Describe runs by the numbers named in `SUMMARIES`.
 
     Parameters
@@ -217,7 +231,8 @@ def example_summary(error, nis, skipped):
     return np.stack(numbers, axis=-1)
 
 
-def still_counts(error, nis):
+@checked
+def still_counts(error: Errors, nis: Nis) -> tuple[IntArray, IntArray]:
     """Count the samples that stand still, by the error curves alone, at small and at large NIS.
 
     A sample stands still if no error changes by more than a quarter of what is usual in its block

@@ -5,17 +5,23 @@ measurement are linear, so that a Kalman filter with the right numbers is consis
 test finds was put there.
 """
 
+from collections.abc import Iterator
+from typing import Annotated, Any
+
 import numpy as np
 
-from .... import _checks
+from ...._hints import Covariance, Measurements, Positive, Runs, State, checked, exactly
+from ...._typing import FloatArray
 from ....estimation import recursion
+from ....estimation.track import Track
 from ....model.doppler import doppler_jacobian, doppler_shift
 from ....model.motion import constant_velocity
 from ..published import reported
-from .ablation import ablated_ekf
+from .ablation import Noise, ablated_ekf
 
 
-def linear_world(runs, *, rng):
+@checked
+def linear_world(runs: Runs, *, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
     """Return paths with random starts and pushes around the paper's, and their measurements.
 
     Parameters
@@ -38,8 +44,6 @@ def linear_world(runs, *, rng):
     ValueError
         If `runs` is not a positive whole number, or `rng` is not a generator.
     """
-    runs = _checks.whole_number("runs", runs)
-    _checks.generator("rng", rng)
     s = reported().scenario
     F, _ = constant_velocity(s.T, s.sigma_a)
     pushes = s.sigma_a * rng.standard_normal((runs, s.samples, 3))
@@ -57,7 +61,16 @@ def linear_world(runs, *, rng):
     return s.truth + away, z
 
 
-def linear_filter(z, *, noise="per_axis", sigma_f=None, sigma_a=None, P0=None, start=None):
+@checked
+def linear_filter(
+    z: Measurements,
+    *,
+    noise: Noise = "per_axis",
+    sigma_f: Positive | None = None,
+    sigma_a: Positive | None = None,
+    P0: Covariance | None = None,
+    start: State | None = None,
+) -> Track:
     """Track in the linear world.
 
     Parameters
@@ -87,7 +100,10 @@ def linear_filter(z, *, noise="per_axis", sigma_f=None, sigma_a=None, P0=None, s
     )  # fmt: skip
 
 
-def faulty_filters(truth, z):
+@checked
+def faulty_filters(
+    truth: Annotated[FloatArray, exactly(None, None, 6)], z: Measurements
+) -> Iterator[tuple[str, Track, FloatArray, FloatArray]]:
     """Yield filters with one fault each, the first with none.
 
     Parameters
@@ -116,7 +132,7 @@ def faulty_filters(truth, z):
         memory[:, k] = 0.3 * memory[:, k - 1] + np.sqrt(1 - 0.3**2) * noise[:, k]
     memory += z - noise
     blind = np.linalg.svd(doppler_jacobian(s.x0, s.array)).Vh[-1]
-    cases = {
+    cases: dict[str, tuple[FloatArray, dict[str, Any]]] = {
         "nothing": (z, {}),
         "noise assumed 10 % too small": (z, {"sigma_f": 0.9 * s.sigma_f}),
         "noise assumed 10 % too large": (z, {"sigma_f": 1.1 * s.sigma_f}),

@@ -1,10 +1,16 @@
 """Which reading of Section 3.4 explains the maps of Fig 3 best, by likelihood."""
 
+from typing import Annotated, Literal
+
 import numpy as np
 from scipy.special import ndtr
 
 from .... import _checks
+from ...._hints import Probability, between, checked, exactly
 from ...._records import record
+from ...._typing import FloatArray
+from ..error_maps import ErrorMap
+from ..published import PublishedFigure3
 
 QUANTITIES = ("position", "state", "velocity")
 
@@ -41,6 +47,11 @@ ORIENTATIONS = {
 }
 
 
+Quantity = Literal["position", "state", "velocity"]
+Width = Annotated[float, between(0.001, 100)]
+
+
+@checked
 @record
 class MapReading:
     """One reading of the figure and how well it explains what is drawn.
@@ -61,7 +72,7 @@ class MapReading:
 
     orientation: str
     label: str
-    quantity: str
+    quantity: Quantity
     behind: float
     deviation: float
 
@@ -71,7 +82,16 @@ class MapReading:
         return f"{names} {0 - self.behind:6.0f} +/- {1.96 * self.deviation:.0f}"
 
 
-def map_score(error, published, panel, *, width=0.15, stray=0.02):
+@checked
+@_checks.quiet
+def map_score(
+    error: Annotated[FloatArray, exactly(None, None, None, check=_checks.measured)],
+    published: PublishedFigure3,
+    panel: Literal[0, 1],
+    *,
+    width: Width = 0.15,
+    stray: Probability = 0.02,
+) -> FloatArray:
     """Return the log-likelihood of every published value under draws of an error.
 
     Parameters
@@ -99,10 +119,7 @@ def map_score(error, published, panel, *, width=0.15, stray=0.02):
         raise ValueError(
             f"error must have shape {published.error.shape[1:]} by draws, got {error.shape}"
         )
-    width = _checks.positive_number("width", width)
-    stray = _checks.probability("stray", stray)
-    with np.errstate(divide="ignore"):
-        draw = np.log10(error)
+    draw = np.log10(error)
     value, below = np.log10(published.error[panel]), published.below[panel]
     density = np.exp(-0.5 * ((value[..., None] - draw) / width) ** 2).mean(axis=-1)
     density /= np.sqrt(2 * np.pi) * width
@@ -114,7 +131,15 @@ def map_score(error, published, panel, *, width=0.15, stray=0.02):
     return np.where(axes, np.nan, score)
 
 
-def map_readings(maps, published, panel, *, width=0.15):
+@checked
+@_checks.quiet
+def map_readings(
+    maps: dict[str, ErrorMap],
+    published: PublishedFigure3,
+    panel: Literal[0, 1],
+    *,
+    width: Width = 0.15,
+) -> list[MapReading]:
     """Compare readings of one map of Fig 3: its orientation, its estimator, its quantity.
 
     Parameters
