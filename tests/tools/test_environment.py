@@ -29,7 +29,7 @@ from tools.command import start
 
 {before}
 step = "mkdir -p .venv/bin; cp /bin/sh .venv/bin/python; sleep {seconds}; echo made >> log"
-tool.steps = lambda folder, lock: dict(all=["sh", "-c", step])
+tool.steps = lambda folder, lock, temporary: dict(all=[["sh", "-c", step]])
 start(tool.main)
 END
 """
@@ -191,3 +191,27 @@ def test_what_pyproject_says_of_the_library_counts_and_what_it_says_of_tests_doe
     assert needs(("line-length = 100", "line-length = 99")) == now
     (tmp_path / "setup.py").write_text("")
     assert needs(("line-length = 100", "line-length = 99")) != now
+
+
+def test_the_halves_of_a_lock_are_the_lock(tmp_path):
+    """Every entry stands in one of them, with all of its hashes."""
+    lock = ROOT / "environment.lock"
+    entries = []
+    for path in tool.halves(lock, tmp_path):
+        part = path.read_text(encoding="utf-8").replace("\n ", "\a").splitlines()
+        assert len(part) >= 50
+        assert all("==" in entry and "--hash=sha256:" in entry for entry in part)
+        entries += part
+    whole = lock.read_text(encoding="utf-8").replace("\n ", "\a").splitlines()
+    assert sorted(entries) == sorted(whole)
+
+
+def test_of_commands_side_by_side_all_run_and_one_that_fails_fails_the_step(tmp_path, monkeypatch):
+    commands = [["sh", "-c", f"echo >{tmp_path / name}; exit {code}"] for name, code in
+                (("a", 0), ("b", 3), ("c", 0))]  # fmt: skip
+    monkeypatch.setattr(tool, "steps", lambda *_: {"all": commands, "never": [["false"]]})
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    with open(tmp_path / "held", "w") as held:
+        assert tool.make(folder, tmp_path / "lock", held.fileno()) == 3
+    assert all((tmp_path / name).exists() for name in "abc")
