@@ -138,7 +138,9 @@ def imm_start(
         x0 = _each_model("x0", x0, models)
         first = _checks.finite("x0", x0[0], (models[0].n,))
     batch = first.shape[:-1]
-    return _state(models, _start(models, x0, P0, mode0, batch))
+    state = _state(models, _start(models, x0, P0, mode0, batch))
+    _checks.estimates("models, x0, P0", state.x, state.P, state.mode)
+    return state
 
 
 @_checks.quiet

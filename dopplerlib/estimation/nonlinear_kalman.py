@@ -86,7 +86,7 @@ def ekf_records(
     A constant of which the square is measured, from a start that is off by one:
 
     >>> track = ekf_records(
-    ...     [[4.1], [3.9], [4.0]], lambda x: x, lambda x: np.eye(1), [[0.0]],
+    ...     [[4.1], [3.9], [4.0]], lambda x: x, lambda x: [[1.0]], [[0.0]],
     ...     lambda x: x**2, lambda x: 2 * x[..., None], [[0.01]], [3.0], [[1.0]],
     ... )
     >>> track.x[:, 0].round(2).tolist()
