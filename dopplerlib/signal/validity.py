@@ -80,8 +80,10 @@ def valid_samples(
     The noise of a module is what its neighboring frequencies or its fourth differences show,
     whichever is less, in the median of a block: neither an echo that grows nor single loud samples
     move it. White noise of a branch falls below a hundredth of its power in 32 samples with a
-    chance of less than 1e-24; in 16 and 128 those are 1e-17 and 1e-38. A module that hardly moves
-    for three quarters of its record or more is told by the others only.
+    chance of less than 1e-24; in 16 and 128 those are 1e-17 and 1e-38. What a stuck module adds
+    itself is told if it lies 10 dB below the module's noise for 192 samples, 20 dB for 64, or 28 dB
+    for 32. A module that hardly moves for three quarters of its record or more is told by the
+    others only.
 
     Samples with an imaginary part of zero throughout are those of a module without Q: I decides.
 

@@ -73,6 +73,19 @@ def test_a_dead_branch_is_a_dead_module(branch):
     assert not valid_samples(x)[1, 2000:3000].any()
 
 
+@pytest.mark.parametrize(("below_db", "length"), [(11, 192), (14, 192), (21, 64), (28, 32)])
+def test_a_stuck_module_with_noise_of_its_own_is_told_in_short_stretches(below_db, length):
+    """Wherever the stretch begins: of 40 records at least 36 lose nine tenths of it."""
+    found = 0
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        x = six(2000, seed=seed)
+        a = int(rng.integers(2000 - length))
+        x[2, a : a + length] = 0.3 + complex_noise(length, 10 ** (-2 - below_db / 10), rng=rng)
+        found += np.mean(~valid_samples(x)[2, a : a + length]) > 0.9
+    assert found >= 36
+
+
 def test_short_pieces_are_told():
     x = six()
     for a in range(100, N, 500):
