@@ -5,16 +5,15 @@ it has no negative variance, and every entry is off by rounding of the two stand
 it belongs to, however much larger the covariance before was: what comes out is a covariance by the
 test of the functions that take one. BLAS may add up the two halves of a square in another order.
 Their mean is taken, which makes it symmetric and is part of the definition of each function.
-Nothing else is repaired.
+Nothing else is repaired. NumPy is kept quiet by the functions that call these, which would do so
+several times in every scan.
 """
 
 import numpy as np
 
-from .. import _checks
 from .._typing import FloatArray
 
 
-@_checks.quiet
 def square_root(P: FloatArray) -> FloatArray:
     """Return square roots of covariances: L with L L' = P to rounding.
 
@@ -40,7 +39,6 @@ def square_root(P: FloatArray) -> FloatArray:
         return np.where(finite, root, np.nan)
 
 
-@_checks.quiet
 def squared(A: FloatArray, noise: FloatArray | float = 0.0) -> FloatArray:
     """Return A A' + noise, symmetric.
 
@@ -58,7 +56,6 @@ def squared(A: FloatArray, noise: FloatArray | float = 0.0) -> FloatArray:
     return (S + S.mT) / 2
 
 
-@_checks.quiet
 def solve(P: FloatArray, B: FloatArray) -> FloatArray:
     """Return P^-1 B by the pseudo-inverse: directions of no variance contribute nothing.
 
