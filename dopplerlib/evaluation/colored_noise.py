@@ -14,7 +14,7 @@ from .intervals import ConfidenceInterval, mean_interval
 @checked
 @record
 class RandomWalkFilter:
-    """A scalar Kalman filter over a random walk, track_errors after it has settled.
+    """A scalar Kalman filter over a random walk, judged after it has settled.
 
     Attributes
     ----------

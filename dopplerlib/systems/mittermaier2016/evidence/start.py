@@ -18,7 +18,10 @@ from ..start import table2_starts
 _DRAWS = 3  # of each of the 1521 places of Fig 3
 _REDRAWN = 500
 _STARTS = 2000
-_LIKELIHOODS = ("stationary", "constant_velocity")
+_LIKELIHOODS = {
+    "stationary likelihood": "stationary",
+    "constant-velocity likelihood": "constant_velocity",
+}
 
 
 @checked
@@ -34,8 +37,8 @@ def _maps(rng):
     one = error_map(_DRAWS, rng=children[0])
     ten, twenty = (
         {
-            f"{name} likelihood": error_map(draws, rng=child, samples=samples, likelihood=name)
-            for name, child in zip(_LIKELIHOODS, pair, strict=True)
+            name: error_map(draws, rng=child, samples=samples, likelihood=likelihood)
+            for (name, likelihood), child in zip(_LIKELIHOODS.items(), pair, strict=True)
         }
         for draws, samples, pair in ((_DRAWS, 10, children[1:3]), (1, 20, children[3:5]))
     )
@@ -97,8 +100,8 @@ def _bounds():
     off_line = np.abs(p.x) > 1e-9  # on it the sensors cannot see the distance
     kinds = {
         "one sample": (1, "stationary"),
-        "ten samples, static likelihood": (10, "stationary"),
-        "ten samples, moving likelihood": (10, "constant_velocity"),
+        "ten samples, stationary likelihood": (10, "stationary"),
+        "ten samples, constant-velocity likelihood": (10, "constant_velocity"),
     }
     maps = {}
     for name, (samples, likelihood) in kinds.items():
@@ -120,8 +123,8 @@ def _bounds():
 
 def _starts(rng):
     found = {
-        f"{name} likelihood": table2_starts(_STARTS, rng=child, likelihood=name)
-        for name, child in zip(_LIKELIHOODS, rng.spawn(2), strict=True)
+        name: table2_starts(_STARTS, rng=child, likelihood=likelihood)
+        for (name, likelihood), child in zip(_LIKELIHOODS.items(), rng.spawn(2), strict=True)
     }
     second = [
         np.linalg.norm((s.start.second_x - s.start.x)[:, :3], axis=-1) > 0.05
