@@ -161,11 +161,12 @@ def rmse_ratio(
     Returns
     -------
     ConfidenceInterval
+        Infinite where the errors of `b` are zero.
 
     Raises
     ------
     ValueError
-        See `rmse`; or if an error of `b` is zero throughout.
+        See `rmse`; or if `a` and `b` have different shapes.
 
     Examples
     --------

@@ -32,7 +32,7 @@ def _baseline(name, value):
 Baseline = Annotated[float, _baseline]  # distance of the radars in m
 LONGEST = 100.0  # s: then the person is 14 m away, and what is measured is noise
 Times = Annotated[FloatArray, exactly(None, check=_within)]
-Offset = Annotated[float, partial(_checks.one_number, check=partial(_checks.bounded, most=10.0))]
+Offset = Annotated[float, partial(_checks.one_number, check=_short)]
 
 
 @checked

@@ -57,9 +57,10 @@ class PathScores:
         """Check that the five figures are there."""
         if not {7, 8, 9, 10, 11} <= set(self.figures):
             raise ValueError(f"figures must be those from 7 to 11, got {self.figures}")
+        shape = len(self.figures), self.settled.shape[1]
         for name in ("settled", "whole", "speed"):
-            if len(getattr(self, name)) != len(self.figures):
-                raise ValueError(f"{name} must have a row for each of figures {self.figures}")
+            if getattr(self, name).shape[:2] != shape:
+                raise ValueError(f"{name} must have shape {shape}, got {getattr(self, name).shape}")
 
     def small_in_figure_7(self) -> BoolArray:
         """Return in which runs the error of Fig 7 is much smaller than the resolution, (runs,)."""

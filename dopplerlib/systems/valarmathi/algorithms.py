@@ -61,6 +61,16 @@ class AlgorithmRuns:
     shared: VelocityTrack
     delayed: VelocityTrack
 
+    def __post_init__(self):
+        """Check that the tracks are of one path and of the same runs."""
+        runs, count = len(self.fixed.x), len(self.path.time) - self.fixed.first
+        for name in ("fixed", "own", "shared", "delayed"):
+            one = getattr(self, name)
+            if one.x.shape != (runs, 2, count, 2) or one.fused_x.shape != (runs, count, 2):
+                raise ValueError(
+                    f"{name} must have x of shape {(runs, 2, count, 2)}, got {one.x.shape}"
+                )
+
     @property
     def time(self) -> FloatArray:
         """Times of the estimates in s, shape (K,)."""

@@ -353,7 +353,8 @@ def calibration(track: VelocityTrack, v: Real, skip: Index) -> dict[str, FloatAr
     -------
     dict of str to ndarray, shape (runs,)
         Error and claimed error in m/s, the mean of NIS, which should be 1, and the correlation of
-        successive innovations, which should be 0.
+        successive innovations, which should be 0. NIS is NaN if the start, where there is no
+        innovation, is not left out.
 
     Raises
     ------

@@ -2,13 +2,14 @@
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from itertools import pairwise
 from typing import Annotated
 
 import numpy as np
 
 from ... import _checks
-from ..._hints import Array, Index, checked
+from ..._hints import Index, checked
 from ..._records import record
 from ..._typing import ComplexArray, FloatArray
 from ...signal.laws import crlb_frequency_std
@@ -44,7 +45,7 @@ class FilteredDoppler:
 
     windows: Lengths
     first: Index
-    v: Array
+    v: Annotated[FloatArray, partial(_checks.measured, shape=())]
     snr_db: Annotated[FloatArray, _checks.decibels]
 
     def __post_init__(self):
@@ -86,6 +87,7 @@ def doppler_filter(
     Returns
     -------
     FilteredDoppler
+        NaN where a window holds the same sample only, or one that hides the others.
 
     Raises
     ------
