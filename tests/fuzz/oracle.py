@@ -84,8 +84,10 @@ def judge(target, call, odd):
     """
     arguments = fresh(call)
     try:
-        for name, each in odd.items():
-            arguments[name] = each.make(arguments[name])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what cannot be cast, say, is odd as well
+            for name, each in odd.items():
+                arguments[name] = each.make(arguments[name])
     except Raised:
         raise
     except (ValueError, TypeError) as error:  # a record refuses an odd field by itself

@@ -19,7 +19,7 @@ from .oracle import Bad, baseline, judge
 
 MEMORY = 4 * 2**30  # bytes of address space that odd calls may use beside what is in use
 MOST_SHRUNK = 4
-LEAST = 20  # odd calls of each function, however long they take
+LEAST = 10  # odd calls of each function, however long they take
 BATCH = 10  # odd calls that are drawn together: Hypothesis takes longer to begin than to draw
 OPTIONS = settings(
     deadline=None,

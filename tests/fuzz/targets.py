@@ -24,7 +24,8 @@ SECTION = re.compile(r"^(\w[\w ]*)\n-+\n", flags=re.MULTILINE)
 ENTRY = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.MULTILINE)
 PACKAGES = (
     "model", "signal", "estimation", "tracking", "chain", "evaluation", "replication",
-    "systems.asheim2015", "systems.macaveiu2013", "systems.sombatsatien", "systems.valarmathi",
+    "systems.asheim2015", "systems.macaveiu2013", "systems.mittermaier2016",
+    "systems.sombatsatien", "systems.valarmathi",
 )  # fmt: skip
 # How a docstring says that arguments are checked elsewhere: such a function promises nothing.
 UNCHECKED = re.compile(r"\bunchecked\b|\bnot checked\b|nothing is checked", flags=re.IGNORECASE)

@@ -14,6 +14,7 @@ from dopplerlib.replication.claims import read_claims
 from dopplerlib.replication.deviations import read_deviations
 from dopplerlib.replication.published import read_published
 from dopplerlib.signal.recording import Recording, read_sigmf, read_wav, write_sigmf, write_wav
+from dopplerlib.systems.mittermaier2016 import write_simulated_iq
 
 RNG = np.random.default_rng(1)
 RECORDING = Recording(
@@ -125,5 +126,6 @@ def calls():
         read_sigmf: {"paths": here / "walk.sigmf-meta"},
         read_wav: {"paths": here / "walk.wav", "carrier": 24e9},
         write_sigmf: {"path": here / "new", "recording": RECORDING},
+        write_simulated_iq: {"folder": here},
         write_wav: {"path": here / "new.wav", "recording": RECORDING},
     }

@@ -38,6 +38,7 @@ class TrackErrors:
 
 
 @checked
+@_checks.quiet
 def track_errors(
     found: IqTrack, times: Iterable[Real] = (0.5, 1.0), carry: bool = True
 ) -> TrackErrors:
@@ -77,7 +78,11 @@ def track_errors(
         x, P, chosen = found.at(time, carry)
         off = truth - x
         error.append(np.linalg.norm(off[:, :3], axis=-1))
-        squared.append(np.sum(off * np.linalg.solve(P, off[..., None])[..., 0], axis=-1))
+        try:
+            solved = np.linalg.solve(P, off[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            raise ValueError(f"found must have covariances that are regular, got {P}") from None
+        squared.append(np.sum(off * solved, axis=-1))
     rows = np.arange(len(chosen))
     nis = found.nis[rows, chosen].mean(axis=-1)
     return TrackErrors(np.array(error), np.array(squared), nis, found.lag1_autocorrelation)

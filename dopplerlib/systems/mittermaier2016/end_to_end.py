@@ -78,13 +78,16 @@ def track_iq(
     True
     """
     s = reported().scenario
+    limit = reported().signal_chain.speed_limit_m_s
+    if limit * iq.array.doppler_per_speed > iq.fs / 2:
+        raise ValueError(f"iq must be sampled so fast that {limit} m/s is not aliased, got {iq.fs}")
     delay = iq.delay if subtract_delay else 0.0
     if timestamp == "end":
         delay -= (round(window * iq.fs) - 1) / 2 / iq.fs
     return track.track_iq(
         replace(iq, delay=delay),
         _room(),
-        speed_limit=reported().signal_chain.speed_limit_m_s,
+        speed_limit=limit,
         velocity_random_walk=_checks.positive_number(
             "sigma_a", s.sigma_a if sigma_a is None else sigma_a
         )

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from ... import _checks
-from ..._hints import Count, Positive, checked, exactly, shaped
+from ..._hints import Count, Positive, checked, exactly, shaped, up_to
 from ..._records import record
 from ..._typing import BoolArray, FloatArray
 from ...estimation.maximum_likelihood import ml_initialize
@@ -35,6 +35,13 @@ class ErrorMap:
 
     position: Annotated[FloatArray, exactly(None, None, None, check=_checks.measured)]
     velocity: Annotated[FloatArray, exactly(None, None, None, check=_checks.measured)]
+
+    def __post_init__(self):
+        """Check that both maps are of the same places and draws."""
+        if self.position.shape != self.velocity.shape:
+            raise ValueError(
+                f"velocity must have shape {self.position.shape}, got {self.velocity.shape}"
+            )
 
     @property
     def state(self) -> FloatArray:
@@ -192,7 +199,7 @@ def fraction_above(
 
 
 @checked
-def comparable(published: PublishedFigure3, panel: Literal[0, 1]) -> BoolArray:
+def comparable(published: PublishedFigure3, panel: Annotated[int, up_to(1, least=0)]) -> BoolArray:
     """Return the places of Fig 3 at which an error can be compared, whichever way it is turned.
 
     Parameters

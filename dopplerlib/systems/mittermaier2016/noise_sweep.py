@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from ..._hints import Array, Count, Index, Positive, between, checked, exactly, shaped
+from ..._hints import Array, Count, Index, Positive, between, checked, covariances, exactly, shaped
 from ..._progress import progress_bar
 from ..._records import record
 from ..._typing import FloatArray
@@ -167,7 +167,9 @@ def run_noise_sweep(
 
     Examples
     --------
-    >>> result = run_noise_sweep([0, 30], draws=2, rng=np.random.default_rng(1))
+    >>> coarse = SweepReading(spacing=0.25)
+    >>> rng = np.random.default_rng(1)
+    >>> result = run_noise_sweep([0, 30], draws=2, rng=rng, reading=coarse)
     >>> result.position.shape, bool((result.position[1] > 10 * result.position[0]).all())
     ((2, 2), True)
     """
@@ -210,7 +212,7 @@ _PARTS = (np.s_[:2], np.s_[3:5])
 
 
 @checked
-def mean_norm(P: Annotated[FloatArray, shaped(2, 2)]) -> FloatArray:
+def mean_norm(P: Annotated[FloatArray, shaped(2, 2, check=covariances)]) -> FloatArray:
     """Return the mean length of a normally distributed vector in a plane.
 
     Parameters

@@ -58,6 +58,13 @@ class PublishedFigure3:
     lowest: Positive
     highest: Positive
 
+    def __post_init__(self):
+        """Check that there is a map for each number of samples."""
+        shape = len(self.samples), len(self.x), len(self.y)
+        for name in ("error", "below"):
+            if getattr(self, name).shape != shape:
+                raise ValueError(f"{name} must have shape {shape}, got {getattr(self, name).shape}")
+
     @property
     def shown(self) -> FloatArray:
         """Published `error` with `lowest` in it where the error is only known to be below."""

@@ -3,6 +3,7 @@
 The files ``results/simulated_recording.*`` are what `write_simulated_iq` writes.
 """
 
+import os
 from contextlib import nullcontext
 from os import PathLike
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 
 from ..._data import on_disk, results
 from ..._files import write_text
+from ..._hints import checked
 from ..._typing import FloatArray
 from ...chain.baseband import Baseband
 from ...chain.simulation import simulate_baseband
@@ -46,6 +48,7 @@ def simulated_recording() -> tuple[Recording, FloatArray, FloatArray]:
     return Recording(SIMULATED["amplitude"] * iq.x[0], SIMULATED["fs"], carrier), time, truth
 
 
+@checked
 def write_simulated_iq(folder: str | PathLike[str]) -> list[Path]:
     """Write the recording as SigMF and its truth as CSV.
 
@@ -60,7 +63,14 @@ def write_simulated_iq(folder: str | PathLike[str]) -> list[Path]:
     -------
     list of Path
         The three files.
+
+    Raises
+    ------
+    ValueError
+        If `folder` is none that exists.
     """
+    if not os.path.isdir(folder):
+        raise ValueError(f"folder must be a folder that exists, got {str(folder)!r}")
     folder = Path(folder)
     recording, time, truth = simulated_recording()
     description = (
@@ -75,6 +85,7 @@ def write_simulated_iq(folder: str | PathLike[str]) -> list[Path]:
     return [meta, data, table]
 
 
+@checked
 def read_simulated_iq(
     folder: str | PathLike[str] | None = None,
 ) -> tuple[Baseband, FloatArray, FloatArray]:

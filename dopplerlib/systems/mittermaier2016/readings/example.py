@@ -85,6 +85,11 @@ class ExampleReadings:
         -------
         ndarray of int, shape (count,)
             The nearest first.
+
+        Examples
+        --------
+        >>> example_readings(15, rng=np.random.default_rng(1)).nearest(2).shape
+        (2,)
         """
         from scipy.stats import norm, rankdata
 
@@ -113,6 +118,11 @@ class ExampleReadings:
         -------
         dict of dict of ConfidenceInterval
             By question and answer. All answers to a question were equally frequent beforehand.
+
+        Examples
+        --------
+        >>> list(example_readings(15, rng=np.random.default_rng(1)).shares(2)["start"])
+        ['of Table 2', 'as drawn']
         """
         near = self.nearest(count, **how)
         return {
@@ -137,6 +147,11 @@ def ruled_out(shares: dict[str, dict[str, ConfidenceInterval]]) -> set[tuple[str
     -------
     set of tuple
         Question and answer.
+
+    Examples
+    --------
+    >>> ruled_out(example_readings(15, rng=np.random.default_rng(1)).shares(2))
+    set()
     """
     return {
         (question, answer)
@@ -196,6 +211,7 @@ def example_readings(runs: Runs, *, rng: np.random.Generator) -> ExampleReadings
 
 
 @checked
+@_checks.quiet
 def example_summary(error: Errors, nis: Nis, skipped: Booleans) -> FloatArray:
     """Describe runs by the numbers named in `SUMMARIES`.
 
@@ -211,6 +227,13 @@ def example_summary(error: Errors, nis: Nis, skipped: Booleans) -> FloatArray:
     Returns
     -------
     ndarray, shape (..., 25)
+        NaN or infinite where an error is unknown or zero.
+
+    Examples
+    --------
+    >>> drawn = reported().figure6
+    >>> example_summary(drawn.error, drawn.nis, drawn.skipped).shape
+    (25,)
     """
     lower, upper = chi2_interval(6)
     small = nis < 6
@@ -232,6 +255,7 @@ def example_summary(error: Errors, nis: Nis, skipped: Booleans) -> FloatArray:
 
 
 @checked
+@_checks.quiet
 def still_counts(error: Errors, nis: Nis) -> tuple[IntArray, IntArray]:
     """Count the samples that stand still, by the error curves alone, at small and at large NIS.
 
@@ -247,6 +271,12 @@ def still_counts(error: Errors, nis: Nis) -> tuple[IntArray, IntArray]:
     -------
     low, high : ndarray, shape (...)
         Number of samples that stand still with a NIS below and above the 95 % interval.
+
+    Examples
+    --------
+    >>> drawn = reported().figure6
+    >>> [int(count) for count in still_counts(drawn.error, drawn.nis)]
+    [20, 17]
     """
     lower, upper = chi2_interval(6)
     change = np.abs(np.diff(error, axis=-2))[..., 25:, :]

@@ -43,6 +43,12 @@ def linear_world(runs: Runs, *, rng: np.random.Generator) -> tuple[FloatArray, F
     ------
     ValueError
         If `runs` is not a positive whole number, or `rng` is not a generator.
+
+    Examples
+    --------
+    >>> truth, z = linear_world(1, rng=np.random.default_rng(1))
+    >>> truth.shape, z.shape
+    ((1, 1001, 6), (1, 1001, 6))
     """
     s = reported().scenario
     F, _ = constant_velocity(s.T, s.sigma_a)
@@ -90,6 +96,11 @@ def linear_filter(
     -------
     Track
         With P and S of leading axis 1.
+
+    Examples
+    --------
+    >>> linear_filter(linear_world(1, rng=np.random.default_rng(1))[1]).x.shape
+    (1, 1001, 6)
     """
     s = reported().scenario
     F, _ = constant_velocity(s.T, s.sigma_a)
@@ -120,6 +131,12 @@ def faulty_filters(
     track : Track
     F, Q : ndarray, shape (6, 6)
         Motion as the filter believes it.
+
+    Examples
+    --------
+    >>> truth, z = linear_world(1, rng=np.random.default_rng(1))
+    >>> next(faulty_filters(truth, z))[0]
+    'nothing'
     """
     s = reported().scenario
     biased = z + np.eye(len(s.array))[0] * s.sigma_f / 4

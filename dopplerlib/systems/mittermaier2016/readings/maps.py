@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from .... import _checks
-from ...._hints import Probability, between, checked, exactly
+from ...._hints import Probability, between, checked, exactly, up_to
 from ...._records import record
 from ...._typing import FloatArray
 from ..error_maps import ErrorMap
@@ -87,7 +87,7 @@ class MapReading:
 def map_score(
     error: Annotated[FloatArray, exactly(None, None, None, check=_checks.measured)],
     published: PublishedFigure3,
-    panel: Literal[0, 1],
+    panel: Annotated[int, up_to(1, least=0)],
     *,
     width: Width = 0.15,
     stray: Probability = 0.02,
@@ -114,6 +114,13 @@ def map_score(
         Per power of ten. Where the published error is only known to be below the lowest contour,
         the logarithm of the probability of that. NaN where it is hidden, and on the lines x = 0
         and y = 0, on one of which every reading has its sensors.
+
+    Examples
+    --------
+    >>> from dopplerlib.systems.mittermaier2016 import error_map, reported
+    >>> ours = error_map(2, rng=np.random.default_rng(1))
+    >>> map_score(ours.position, reported().figure3, 0).shape
+    (39, 39)
     """
     if error.shape[:2] != published.error.shape[1:]:
         raise ValueError(
@@ -136,7 +143,7 @@ def map_score(
 def map_readings(
     maps: dict[str, ErrorMap],
     published: PublishedFigure3,
-    panel: Literal[0, 1],
+    panel: Annotated[int, up_to(1, least=0)],
     *,
     width: Width = 0.15,
 ) -> list[MapReading]:
@@ -162,6 +169,13 @@ def map_readings(
     ------
     ValueError
         If the maps have different numbers of draws: more of them give a smoother density.
+
+    Examples
+    --------
+    >>> from dopplerlib.systems.mittermaier2016 import error_map, reported
+    >>> ours = error_map(2, rng=np.random.default_rng(1))
+    >>> map_readings({"one sample": ours}, reported().figure3, 0)[0].behind
+    0.0
     """
     numbers = {m.position.shape[-1] for m in maps.values()}
     if len(numbers) != 1:

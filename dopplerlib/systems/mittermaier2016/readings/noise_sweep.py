@@ -28,7 +28,11 @@ def _logarithm(name, value, shape):
 
 
 def _sequences(name, value):
-    return value if value == np.inf else _checks.moderate_number(name, value)
+    return (
+        value
+        if isinstance(value, float) and value == np.inf
+        else _checks.moderate_number(name, value)
+    )
 
 
 Dots = Annotated[FloatArray, exactly(None, None, check=_positive)]
@@ -168,6 +172,13 @@ def dots_log_likelihood(model: DotsStructure, position: Dots, velocity: Dots) ->
     of the model is itself that of m simulated sequences of covariance S, its error S / m is added
     to the covariance of the mean of the dots: else our own Monte Carlo error would look like a
     misfit.
+
+    Examples
+    --------
+    >>> dots = np.array([[1.0, 2.0, 1.5], [3.0, 7.0, 4.0]])
+    >>> model = dots_structure(dots, dots[:, ::-1])
+    >>> bool(np.isfinite(dots_log_likelihood(model, dots, dots)))
+    True
     """
     dots = _dots(position, velocity)
     levels, draws = dots.shape[:2]
@@ -226,6 +237,13 @@ def sweep_score(
         Log-likelihood in nats; only differences between readings mean something.
     low, high : float
         Central 95 % of the score when our sequences are drawn again from themselves.
+
+    Examples
+    --------
+    >>> ours, rng = saved_noise_sweep(), np.random.default_rng(1)
+    >>> score, low, high = sweep_score(ours, reported().figure4, rng=rng, resamples=3)
+    >>> low <= high
+    True
     """
     rows = [int(np.argmin(np.abs(noise_levels() - variance))) for variance in figure.variance]
     dots = published.position[rows], published.velocity[rows]
@@ -253,6 +271,11 @@ def saved_sweep_readings(again: bool = False) -> list[tuple[SweepReading, float,
     -------
     list of tuple
         The reading, its score in nats, and the ends of its 95 % interval.
+
+    Examples
+    --------
+    >>> len(saved_sweep_readings(again=True))
+    2
     """
     saved = read_json("noise_sweep_readings.json", folder=results)
     rows = []
