@@ -239,7 +239,8 @@ def mean_norm(P: Annotated[FloatArray, shaped(2, 2, check=covariances)]) -> Floa
     middle = (P[..., 0, 0] + P[..., 1, 1]) / 2
     half = np.hypot((P[..., 0, 0] - P[..., 1, 1]) / 2, P[..., 0, 1])
     large = middle + half
-    return np.sqrt(2 * large / np.pi) * ellipe(np.minimum(1.0, 2 * half / large))
+    share = 2 * half / np.where(large > 0, large, 1.0)  # nothing spreads where `large` is zero
+    return np.sqrt(2 * large / np.pi) * ellipe(np.minimum(1.0, share))
 
 
 @checked
