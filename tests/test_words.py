@@ -16,7 +16,17 @@ from tools.notebooks import chapters
 ROOT = Path(__file__).resolve().parents[1]
 LIBRARY = ROOT / "dopplerlib"
 PAGES = chapters() + sorted((ROOT / "book").glob("*.md"))
-PACKAGES = ("model", "signal", "estimation", "tracking", "chain", "evaluation", "replication")
+PACKAGES = (
+    "model",
+    "signal",
+    "estimation",
+    "tracking",
+    "chain",
+    "evaluation",
+    "replication",
+    "systems",
+    "figures",
+)
 
 WORDS = {
     r"form of Joseph": "Joseph form",
@@ -31,8 +41,9 @@ WORDS = {
     r"\bwhoever\b|\bnobody\b": "a subject",
     r"\b(is|are|was|be) (told|said)\b|\btells\b": "states, reports, reads",
     r"\b(so|how) (well|good)\b": "accuracy",
-    r"\bhow (often|many|far|much|long)\b": "number, fraction, distance, length",
-    r"^What\b|\b[Ww]hat (a|an|the|is|are|was|were|it|of|comes|stands)\b": "a noun as subject",
+    r"\bhow (often|many|far|much|long|likely|old)\b": "number, fraction, distance, length, age",
+    r"^(What|Why|Which|How (?!to\b))\b|^Return (what|how)\b": "a noun as subject",
+    r"\b[Ww]hat (a|an|the|is|are|was|were|it|of|comes|stands)\b": "a noun as subject",
     r"\bnot to be (seen|known)\b|\bcannot see\b": "unobservable",
     r"\bno sound\b": "not valid",
     r"\bdie out\b|\bsettles\b": "stable, converges",
@@ -100,6 +111,7 @@ def test_titles_and_captions_do_so_too(path):
     [
         "Return the state after a measurement, in the form of Joseph.",
         "What a Kalman filter believes.",
+        "How the filter of one radar is set.",
         "Return how many independent values an average is worth.",
         "Return the share of runs that are lost.",
         "Fuse two estimates of which nobody knows the correlation.",

@@ -206,7 +206,7 @@ def benchmark_cell(
     f: Annotated[FloatArray, exactly(None)],
     snr_db: Annotated[float, between(-200, 200)],
 ) -> tuple[ConfidenceInterval, int]:
-    """Return how one estimator does at one level.
+    """Return the error of one estimator over the bound, and its outliers, at one noise level.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ def clouds(errors: dict[str, Array], covariances: dict[str, Array], names: Seque
     errors : dict of str to ndarray, shape (runs, 2)
         Errors for each filter, in m.
     covariances : dict of str to ndarray, shape (2, 2)
-        What each filter believes.
+        Covariances that each filter reports.
     names : sequence of str
         The two components.
     """
@@ -195,7 +195,7 @@ def claims(time: Array, spread: Array, claimed: dict[str, Array]) -> Figure:
     spread : ndarray, shape (M,)
         Size of the actual error in m.
     claimed : dict of str to ndarray, shape (M,)
-        Standard deviation of the range as each filter believes it, in m.
+        Standard deviation of the range as each filter reports it, in m.
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()

@@ -28,7 +28,7 @@ def bands(
     x : ndarray, shape (K, 2)
         Estimates.
     deviation : ndarray, shape (K, 2)
-        Standard deviations of `x` as the filter believes them.
+        Standard deviations of `x` as the filter reports them.
     measured : ndarray, shape (K,), optional
         Velocities that the measurements alone give, in m/s.
     """

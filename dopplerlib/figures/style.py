@@ -1,4 +1,4 @@
-"""What all figures share: the style file, the colors by meaning, and a fresh figure."""
+"""Parts of all figures: the style file, the colors by meaning, and a fresh figure."""
 
 from contextlib import contextmanager
 from importlib.resources import as_file, files

@@ -1,4 +1,4 @@
-"""How large the error of a position has to be: the area of the thesis, and the bound."""
+"""The expected error of a position: the area of the thesis, and the Cramér-Rao bound."""
 
 from functools import partial
 from typing import Annotated

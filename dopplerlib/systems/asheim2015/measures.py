@@ -20,7 +20,7 @@ LIMIT, AFTER, WINDOW = 1.0, 5.0, 1.0  # m, s, s
 
 @checked
 def departure_times(updated: Booleans, time: Times, scans: Count = 10) -> FloatArray:
-    """Return when a track is left: the first run of scans in a row without an accepted detection.
+    """Return the time at which a track begins to lack accepted detections for many scans in a row.
 
     Parameters
     ----------

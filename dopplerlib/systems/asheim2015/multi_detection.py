@@ -1,4 +1,4 @@
-"""Trackers of one radar for scans with many detections: tracks that live and die, and PDA."""
+"""Trackers of one radar for scans with many detections: track management, and PDA."""
 
 from typing import Annotated
 
@@ -31,7 +31,7 @@ def managed_tracks(
     detections : array_like, shape (K, M, 2)
         Range and range rate of each detection; NaN where there is none.
     settings : FilterSettings
-        How the filter of each track is set; its gate is that on NIS.
+        Settings of the filter of each track; the gate is that on NIS.
 
     Returns
     -------
@@ -108,7 +108,7 @@ def on_track(tracks: list[ManagedTrack], truth: Scans, scans: Reals, limit: Posi
 
 @checked
 def false_tracks(tracks: list[ManagedTrack], truth: Scans, limit: Positive) -> int:
-    """Return how many confirmed tracks follow something else than the target.
+    """Return the number of confirmed tracks that do not follow the target.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def pda_ranges(
     detections : array_like, shape (..., K, M, 2)
         Range and range rate of each detection; NaN where there is none.
     settings : FilterSettings
-        How the filter is set; its gate is that on NIS.
+        Settings of the filter; the gate is that on NIS.
     x0 : array_like, shape (..., 2)
         State at the first scan.
 

@@ -1,4 +1,4 @@
-"""What the thesis states: settings of its text and of its code, and what it says in numbers."""
+"""Values that the thesis states: settings of its text and of its code, and its results."""
 
 from functools import cache
 
@@ -31,7 +31,7 @@ class Reported:
 
 @cache
 def reported() -> Reported:
-    """Return what the thesis states.
+    """Return the values that the thesis states.
 
     Returns
     -------

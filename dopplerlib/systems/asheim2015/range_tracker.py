@@ -21,14 +21,14 @@ Starts = Annotated[FloatArray, shaped(2, check=_near)]
 @checked
 @record
 class RangeTrack:
-    """What the filter of one radar makes of its detections.
+    """Estimates of one radar's filter, and the detections that it used.
 
     Attributes
     ----------
     x : ndarray, shape (..., K, 2)
         Estimates of range in m and range rate in m/s.
     P : ndarray, shape (..., K, 2, 2)
-        Their covariances as the filter believes them.
+        Their covariances as the filter reports them.
     chosen : ndarray, shape (..., K, 2)
         The detection that was used; NaN where none was.
     updated : ndarray of bool, shape (..., K)
@@ -64,7 +64,7 @@ def track_ranges(
         Range in m and range rate in m/s of up to M detections in each of K scans; NaN where there
         is none.
     settings : FilterSettings
-        How the filter is set, see `filter_settings`.
+        Settings of the filter, see `filter_settings`.
     doppler : bool
         Whether the range rate updates the filter. The box looks at it in any case, as in the
         code; a gate on NIS only if it updates.

@@ -107,7 +107,7 @@ class RadarRecords:
         )
 
     def with_offset(self, offset: Real) -> "RadarRecords":
-        """Return the records as they look to whoever believes in another offset, in s."""
+        """Return the records with another assumed offset in s, and the same measurements."""
         return replace(self, offset=offset)
 
     @property
@@ -292,8 +292,8 @@ def simulate_radars(
         "difference": the range rate is the difference of the range to the next scan over T, as in
         Appendix A.3; "exact": it is that of the instant.
     correlated : int
-        Number of scans that an integration spans: the noise of neighboring scans shares what they
-        share of it. 1 is white noise.
+        Number of scans that an integration spans: neighboring scans have the noise of the
+        overlap in common. 1 is white noise.
     offset : float
         How much later than the first radar the second one measures, in s.
     false_alarm : float, optional

@@ -1,4 +1,4 @@
-"""How the filter of one radar is set: by the text of the thesis, by its code, or by us."""
+"""Settings of one radar's filter: those of the thesis's text, of its code, and ours."""
 
 from typing import Annotated, Literal
 
@@ -18,7 +18,7 @@ Symmetric = Annotated[FloatArray, exactly(2, 2)]
 @checked
 @record
 class FilterSettings:
-    """How the filter of one radar is set.
+    """Settings of one radar's filter.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ def filter_settings(
     floor: Pair | None = None,
     gate: Literal["own", "box", "nis"] | None = "own",
 ) -> FilterSettings:
-    """Return how the filter of one radar is set.
+    """Return the settings of one radar's filter.
 
     Parameters
     ----------

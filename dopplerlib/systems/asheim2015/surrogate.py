@@ -20,7 +20,7 @@ ECHOES, CLUTTER, GHOSTS = 3, 3, 4  # most false or further detections of a kind 
 @checked
 @record
 class SurrogateWalk:
-    """A simulated walk and what the radars report of it.
+    """A simulated walk and the detections of the radars.
 
     Attributes
     ----------

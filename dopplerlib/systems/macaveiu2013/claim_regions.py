@@ -1,4 +1,4 @@
-"""For which noise the claims of Section IV hold: the document does not state its noise."""
+"""Regions of noise in which the claims of Section IV hold; the document does not state it."""
 
 from itertools import pairwise
 from typing import Annotated, Literal
@@ -16,7 +16,7 @@ from .settings import AutomotiveSettings, automotive_settings
 from .truth import vehicle_paths
 
 MUCH_SMALLER = 0.5  # our reading of "much smaller than 1 m": less than half of it
-MOST = 0.9  # a claim on every record holds where it is true in this share of them
+MOST = 0.9  # a claim on every record holds where it is true in this fraction of them
 CLAIMS = ("Fig 7 much below 1 m", "all below 1 m", "10b and 11c worse", "all three")
 Largest = Annotated[FloatArray, exactly(None, None)]
 Axis = tuple[Literal["sigma_x", "sigma_v", "w"], Annotated[FloatArray, exactly(None)]]
@@ -25,7 +25,7 @@ Axis = tuple[Literal["sigma_x", "sigma_v", "w"], Annotated[FloatArray, exactly(N
 @checked
 @record
 class PathScores:
-    """How the five paths went, in every run.
+    """Errors of the filter on the five paths, in every run.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ def score_paths(
 
 
 def _unit_noise(runs, rng, s):
-    """Return noise of deviation one for every path, (K, position and velocity, paths, runs, axis).
+    """Return unit-variance noise for every path, (K, position and velocity, paths, runs, axis).
 
     Time first, so that a step of the filter works on contiguous memory.
     """
@@ -174,7 +174,7 @@ def claim_map(
     rng: np.random.Generator,
     s: AutomotiveSettings | None = None,
 ) -> dict[str, FloatArray]:
-    """Return in how many runs the claims hold, over two settings.
+    """Return the fraction of runs in which each claim holds, over two settings.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def claim_map(
     Returns
     -------
     dict of str to ndarray, shape (3, rows, columns)
-        For each of `CLAIMS` the share of the runs in which it is true, and the ends of its 95 %
+        For each of `CLAIMS` the fraction of runs in which it is true, and the ends of its 95 %
         interval.
 
     Examples
@@ -216,7 +216,7 @@ def claim_map(
 
 @checked
 def decided_claims(shares: Reals) -> IntArray:
-    """Return where a claim holds: where it is true in most runs, `MOST` of them or more.
+    """Return 1 where a claim holds in a fraction `MOST` of the runs, -1 where not, 0 if undecided.
 
     Parameters
     ----------
@@ -243,7 +243,7 @@ def decided_claims(shares: Reals) -> IntArray:
 def claim_borders(
     values: Annotated[FloatArray, exactly(None)], shares: Annotated[FloatArray, exactly(3, None)]
 ) -> list[tuple[float, float, bool]]:
-    """Return between which values of a setting a claim begins to hold, and ends.
+    """Return the borders between the values of a setting at which a claim holds and does not.
 
     Parameters
     ----------
@@ -282,7 +282,7 @@ def claim_borders_along(
     rng: np.random.Generator,
     s: AutomotiveSettings | None = None,
 ) -> dict[str, list[tuple[float, float, bool]]]:
-    """Return between which values of one setting each claim begins to hold, and ends.
+    """Return the borders of every claim along one setting, see `claim_borders`.
 
     Parameters
     ----------

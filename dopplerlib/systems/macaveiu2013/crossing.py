@@ -21,7 +21,7 @@ Pair = Annotated[FloatArray, exactly(2, None, 4)]  # states of two targets at al
 @checked
 @record
 class Crossing:
-    """How two tracks came through a crossing.
+    """Tracks of two crossing targets, and whether they were swapped or lost.
 
     Attributes
     ----------

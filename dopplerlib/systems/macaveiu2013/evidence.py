@@ -97,7 +97,7 @@ def _relations(slopes):
 
 
 def _slopes_needed(targets):
-    """Return how many slopes leave no ghost, at the frequency resolution of one measurement."""
+    """Return the least number of slopes without a ghost, at the resolution of one measurement."""
     rows = _relations(signals.SLOPES)
     for number in range(2, len(rows) + 1):
         some = rows[:number]
@@ -171,7 +171,7 @@ def _filter(rng):
 
 
 def _scheme():
-    """Read what the saved study found."""
+    """Return the evidence of the saved study of the scheme."""
     found, counted = processing_study.saved_outcomes(), processing_study.saved_detections().values()
     plain = {figure: found[figure, "as in Fig 6"] for figure in vehicle_paths()}
     samples = automotive_settings().samples

@@ -1,4 +1,4 @@
-"""How far the filter lags behind an acceleration, and what a better choice of w can do."""
+"""Steady-state lag and noise of the filter, and the w that minimizes its error."""
 
 from typing import Literal
 
@@ -13,7 +13,7 @@ from .settings import AutomotiveSettings, automotive_settings
 
 @checked
 def acceleration_lag(a: Real, s: AutomotiveSettings | None = None) -> FloatArray:
-    """Return how far the settled filter stays behind a constant acceleration.
+    """Return the steady-state lag of the filter behind a constant acceleration.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def settled_noise_std(s: AutomotiveSettings | None = None) -> FloatArray:
     Returns
     -------
     ndarray, shape (2,)
-        Position in m, velocity in m/s. Smaller than the filter believes, since the target does
+        Position in m, velocity in m/s. Smaller than the filter reports, since the target does
         not wander as E_x says.
 
     Raises
@@ -149,7 +149,7 @@ def best_w(a: Real, component: Literal[0, 1] = 1, s: AutomotiveSettings | None =
 
 @checked
 def velocity_response(rate: Positive, s: AutomotiveSettings | None = None) -> complex:
-    """Return how the settled filter renders a sinusoidal velocity.
+    """Return the frequency response of the steady-state filter, from true to estimated velocity.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def velocity_response(rate: Positive, s: AutomotiveSettings | None = None) -> co
     Returns
     -------
     complex
-        Estimated over true velocity: the modulus is the share of the amplitude that is left, the
+        Estimated over true velocity: the modulus is the fraction of the amplitude that is left, the
         argument the phase, negative when late.
 
     Raises

@@ -33,7 +33,7 @@ class VehicleRuns:
     x : ndarray, shape (runs, K, 4)
         Estimates; the first is the first measurement.
     P : ndarray, shape (K, 4, 4)
-        Their covariance as the filter believes it, the same in all runs.
+        Their covariance as the filter reports it, the same in all runs.
     nis : ndarray, shape (runs, K)
         Normalized innovation squared; NaN at the first sample.
 

@@ -1,4 +1,4 @@
-"""What the radar of Section III measures, range, azimuth and range rate, and two filters for it."""
+"""Range, azimuth and range rate as the radar of Section III measures them, and two filters."""
 
 from typing import Annotated
 

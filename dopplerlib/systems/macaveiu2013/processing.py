@@ -307,7 +307,7 @@ def track_objects(
 
 @checked
 def hidden_scans(truth: Truth) -> BoolArray:
-    """Return where the clutter rule deletes the target itself, were there no noise.
+    """Return whether the clutter rule deletes the target itself at each scan, without noise.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The scheme of Fig 6 on many records: what becomes of the target, of the clutter, of the tracks.
+"""The scheme of Fig 6 on many records: outcomes for the target, the clutter and the tracks.
 
 The document shows one record of each path and states no number for its scheme. ``make study
 NAME=vehicle_tracking`` runs the study; what it found is in ``results`` and read here.
@@ -57,7 +57,7 @@ ONLY = {
 @checked
 @record
 class SchemeOutcome:
-    """What the scheme made of one record.
+    """Outcome of the scheme for one record.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class SchemeOutcome:
 @checked
 @record
 class DetectionCounts:
-    """How many detections of one record there are, and how many the clutter rule calls clutter.
+    """Numbers of detections in one record, and of those that the clutter rule deletes.
 
     Attributes
     ----------
@@ -161,7 +161,7 @@ def study_record(figure: Figure, run: Index, variant: Variant = "as in Fig 6") -
 def study_outcome(
     scans: Iterable[VehicleScan], truth: Truth, variant: Variant = "as in Fig 6"
 ) -> SchemeOutcome:
-    """Process a record and say what became of the target.
+    """Process a record and return the outcome for the target.
 
     Parameters
     ----------
@@ -307,7 +307,7 @@ def deleted_fraction(truth: Truth | None = None, limit: Positive | None = None) 
 
 @cache
 def saved_outcomes() -> dict[tuple[int, str], dict[str, FloatArray]]:
-    """Return what the study found.
+    """Return the saved outcomes of the study.
 
     Returns
     -------
@@ -325,7 +325,7 @@ def saved_outcomes() -> dict[tuple[int, str], dict[str, FloatArray]]:
 
 @cache
 def saved_detections() -> dict[int, dict[str, FloatArray]]:
-    """Return what the study counted.
+    """Return the saved detection counts of the study.
 
     Returns
     -------
@@ -343,7 +343,7 @@ def saved_detections() -> dict[int, dict[str, FloatArray]]:
 
 @checked
 def outcome_summary(figure: Figure, variant: Variant) -> dict[str, np.ndarray]:
-    """Return what a table of the study shows, run by run.
+    """Return the columns of a table of the study, run by run.
 
     Parameters
     ----------
@@ -355,7 +355,7 @@ def outcome_summary(figure: Figure, variant: Variant) -> dict[str, np.ndarray]:
     Returns
     -------
     dict of str to ndarray, shape (runs,)
-        Numbers, and booleans where the share of the records is of interest. Errors are those of
+        Numbers, and booleans where the fraction of records is of interest. Errors are those of
         the records in which the target was tracked at all.
 
     Raises

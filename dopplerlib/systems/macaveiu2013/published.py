@@ -1,4 +1,4 @@
-"""What the document states, and what this book fills in, from ``data/macaveiu2013``."""
+"""Values that the document states or this book fills in, from ``data/macaveiu2013``."""
 
 from functools import cache
 
@@ -30,7 +30,7 @@ class Reported:
 
 @cache
 def reported() -> Reported:
-    """Return what the document states.
+    """Return the values that the document states, and those filled in.
 
     Returns
     -------

@@ -16,7 +16,7 @@ from .published import reported
 @checked
 @record
 class AutomotiveSettings:
-    """Sampling, noise and filter; what the document leaves open is our choice.
+    """Sampling, noise and filter; our choice where the document states no value.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What this book shows to the waveforms of Section II: all of it is ours."""
+"""Targets and noise for the waveforms of Section II; all values are ours."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""How well the position can be known: from windows side by side, and from the samples."""
+"""Cramér-Rao bounds on the position: from windows side by side, and from the samples."""
 
 from typing import Annotated
 
@@ -25,7 +25,7 @@ def position_bound(
     first: Time = 0.0,
     samples_per_second: Rate = 100e3,
 ) -> FloatArray:
-    """Return how well the position at a time can be known from windows side by side.
+    """Return the Cramér-Rao bound on the position at a time, from windows side by side.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def position_bound(
 def position_bound_iq(
     time: Time, cn0: Echo, *, first: Time = 0.0, samples_per_second: Rate = 2000.0
 ) -> FloatArray:
-    """Return how well the position at a time can be known from the IQ samples up to it.
+    """Return the Cramér-Rao bound on the position at a time, from the IQ samples up to it.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def position_bound_iq(
 
 @checked
 def record_length(error: Positive, cn0: Echo) -> float:
-    """Return how long a record has to be until the position can be known so well.
+    """Return the length of record at which the bound on the position falls to an error.
 
     Parameters
     ----------

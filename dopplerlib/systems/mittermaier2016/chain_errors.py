@@ -1,4 +1,4 @@
-"""How far the tracks of the whole chain are from the truth."""
+"""Errors of the tracks of the whole chain."""
 
 from collections.abc import Iterable
 from typing import Annotated
@@ -16,7 +16,7 @@ from .published import reported
 @checked
 @record
 class TrackErrors:
-    """Tracks of the target of Table 2 beside the truth.
+    """Errors and consistency of tracks of the target of Table 2.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The error maps of Section 3.4, drawn anew as often as wanted (Fig 3)."""
+"""The error maps of Section 3.4, from any number of draws (Fig 3)."""
 
 from collections.abc import Iterable
 from typing import Annotated, Literal
@@ -200,7 +200,7 @@ def fraction_above(
 
 @checked
 def comparable(published: PublishedFigure3, panel: Annotated[int, up_to(1, least=0)]) -> BoolArray:
-    """Return the places of Fig 3 at which an error can be compared, whichever way it is turned.
+    """Return the places of Fig 3 at which errors can be compared in every orientation.
 
     Parameters
     ----------

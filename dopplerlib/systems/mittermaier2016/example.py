@@ -1,4 +1,4 @@
-"""The simulation example of Section 4, run as often as wanted (Fig 6)."""
+"""The simulation example of Section 4, in any number of runs (Fig 6)."""
 
 from collections.abc import Iterable
 from typing import Annotated, Literal

@@ -1,4 +1,4 @@
-"""How the error of the start grows with the noise (Fig 4), under any reading of the text."""
+"""Error of the initial estimate against the noise (Fig 4), under any interpretation of the text."""
 
 from collections.abc import Iterable
 from dataclasses import field
@@ -43,7 +43,7 @@ def noise_levels() -> FloatArray:
 
 
 def error_limits() -> tuple[float, float]:
-    """Return what the text says that the averaged errors stay below.
+    """Return the limits that the text states for the averaged errors.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def _ours(name):
 @checked
 @record
 class SweepReading:
-    """What the text leaves open about Fig 4, decided in one way.
+    """An interpretation of the text on Fig 4: one choice for each point that it leaves open.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the paper prints and draws, from ``data/mittermaier2016``."""
+"""Values that the paper prints and draws, from ``data/mittermaier2016``."""
 
 from functools import cache
 from typing import Annotated
@@ -166,7 +166,7 @@ class Reported:
 
 @cache
 def reported() -> Reported:
-    """Return what the paper states.
+    """Return the values that the paper states.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The start of the simulation example, estimated as often as wanted (Table 2)."""
+"""The initial estimate of the simulation example, in any number of runs (Table 2)."""
 
 from dataclasses import replace
 from typing import Annotated, Literal
@@ -132,7 +132,7 @@ def start_misfit(
     likelihood: Likelihood = "constant_velocity",
     rounding: Annotated[float, between(0, 1)] = 0.0,
 ) -> float:
-    """Return how far the shifts of a state are from those of the true start of Table 2.
+    """Return the distance of a state's shifts from those of the true start of Table 2.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def start_misfit(
 
 @checked
 def samples_needed(error: Positive | None = None, *, array: RadarArray | None = None) -> int:
-    """Return how long a record must be for its bound to fall to an error.
+    """Return the number of samples at which the bound on the position falls to an error.
 
     Parameters
     ----------

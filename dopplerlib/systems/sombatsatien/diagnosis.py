@@ -1,4 +1,4 @@
-"""Measures of the runs of a variant, and what bounds them."""
+"""Measures of the runs of a variant, and their bounds."""
 
 from dataclasses import replace
 
@@ -97,7 +97,7 @@ def measures(result: PostMortem) -> dict[str, FloatArray]:
 
 @checked
 def outcomes(result: PostMortem) -> dict[str, FloatArray]:
-    """Return what the report prints of its own run, for each of these runs.
+    """Return the quantities that the report prints of its own run, for each of these runs.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the report states, from ``data/sombatsatien``."""
+"""Values that the report states, from ``data/sombatsatien``."""
 
 from functools import cache
 
@@ -39,7 +39,7 @@ class Reported:
 
 @cache
 def reported() -> Reported:
-    """Return what the report states.
+    """Return the values that the report states.
 
     Returns
     -------

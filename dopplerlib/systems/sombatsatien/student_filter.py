@@ -21,7 +21,7 @@ Jacobian = Literal["as reported", "derived"]
 def student_jacobian(
     x: States, array: RadarArray, jacobian: Jacobian = "as reported"
 ) -> FloatArray:
-    """Return the derivative of the Doppler shifts, or what the report takes for it.
+    """Return the derivative of the Doppler shifts, with the report's signs or the correct ones.
 
     Parameters
     ----------
@@ -146,5 +146,5 @@ def _solved(S, right, k):
 
 
 def _signs(jacobian):
-    """Return what the columns of the derivative are multiplied with."""
+    """Return the factors of the derivative's columns."""
     return np.repeat([-1.0 if jacobian == "as reported" else 1.0, 1.0], 3)

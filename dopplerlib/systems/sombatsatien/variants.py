@@ -1,4 +1,4 @@
-"""The report's system, run as often as wanted, with each cause of failure repaired or not."""
+"""The report's system in any number of runs, with each cause of failure repaired or not."""
 
 from dataclasses import replace
 from typing import Annotated, Literal
@@ -190,7 +190,7 @@ def post_mortem(
 
 @checked
 def repairs(runs: Runs, *, rng: np.random.Generator) -> dict[str, PostMortem]:
-    """Run every combination of what is repaired and what is not, on the same noise.
+    """Run every combination of repairs on the same noise.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def repairs(runs: Runs, *, rng: np.random.Generator) -> dict[str, PostMortem]:
 
 @checked
 def consistent_runs(runs: Runs, *, rng: np.random.Generator) -> PostMortem:
-    """Run the repaired filter from starts that err as it believes: by a centimeter, unbiased.
+    """Run the repaired filter from unbiased starts with errors of the covariance that it assumes.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ FIXED, OWN, FUSED = 0, 1, 2
 
 @njit(nogil=True, error_model="numpy")
 def _place(nodes, value):
-    """Return the interval of the nodes that holds a value, and how far in it the value is."""
+    """Return the interval of the nodes that holds a value, and the relative position in it."""
     last = len(nodes) - 1
     if value <= nodes[0]:
         return 0, 0.0

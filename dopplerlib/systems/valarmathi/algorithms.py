@@ -1,4 +1,4 @@
-"""The five algorithms of the document, and a sixth that knows how old its measurements are."""
+"""The five algorithms of the document, and a sixth that models the age of its measurements."""
 
 from typing import Annotated, Literal
 
@@ -117,7 +117,7 @@ class AlgorithmRuns:
         return cumulative_error(self.truth[scored], self.velocity(algorithm, sensor)[:, scored])
 
     def delay(self, algorithm: Number, sensor: Sensor = 1) -> FloatArray:
-        """Return by how much each run is late in a steady maneuver, in s, shape (runs,)."""
+        """Return the delay of each run in a steady maneuver, in s, shape (runs,)."""
         steady = self.during("steady")
         a = self.path.a[self.fixed.first :][steady]
         error = (self.velocity(algorithm, sensor) - self.truth)[:, steady]

@@ -82,7 +82,7 @@ def evidence(*, rng: np.random.Generator, runs: Runs = 100, cells: dict | None =
 
 
 def _residuals(result):
-    """Return what takes the course of the errors and not only their size."""
+    """Return the evidence from the errors over time: fraction due to delay, variance by Eq 14."""
     steady = result.during("steady")
     a = result.path.a[result.fixed.first :][steady]
     error = result.velocity(1)[:, steady] - result.truth[steady]
@@ -230,7 +230,7 @@ def _limits(found):
 
 
 def _limits_apart():
-    """Return by how much the limit of one adaptive filter is above that of two, on each path."""
+    """Yield the limit of one adaptive filter minus that of two, on each path."""
     shares = saved_failures()
     for path in BOTH:
         two, one = (failure_limit(*shares[path, a]) for a in (4, 2))
@@ -252,7 +252,7 @@ def _ratios(found, paths, over, under, what, low=LOWEST, high=np.inf):
 
 
 def _taken_away(cell):
-    """Return which part of the cee fusion without adaptation takes away, in percent."""
+    """Return the reduction of the cee by fusion without adaptation, in percent."""
     return 100 * (1 - cell[3, "cee"] / cell[1, "cee"])
 
 

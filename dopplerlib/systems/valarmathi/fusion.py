@@ -1,4 +1,4 @@
-"""What is done today with two sensors: fusion that knows, or owns not to know, what is common."""
+"""Current practice for two sensors: track fusion with known and with unknown cross-covariance."""
 
 from typing import Annotated
 
@@ -31,7 +31,7 @@ Decibels = Annotated[float, _decibels]
 @checked
 @record
 class FusedTrack:
-    """What one way of fusing makes of two sensors.
+    """Estimates by one way of fusing two sensors.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ def merged_doppler(doppler: FilteredDoppler, snr_db: Decibels) -> tuple[Filtered
 def fuse_all(
     doppler: FilteredDoppler, snr_db: Decibels, *, delayed: bool = True, hop: Count = 1
 ) -> dict[str, FusedTrack]:
-    """Fuse what two sensors with a fixed window see, in every way.
+    """Fuse two sensors with a fixed window, in every way.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def fuse_all(
 def matched_model(
     runs: Runs, samples: Runs, snr_db: Decibels, *, rng: np.random.Generator
 ) -> tuple[FloatArray, FilteredDoppler]:
-    """Make a target and measurements that are exactly as the filters suppose.
+    """Simulate a target and measurements that match the model of the filters exactly.
 
     Parameters
     ----------
@@ -287,7 +287,7 @@ def fusion_errors(
 def ablation(
     doppler: FilteredDoppler, snr_db: Decibels, path: VelocityPath
 ) -> dict[str, dict[str, FloatArray]]:
-    """Return what each step from the document's first algorithm on gains, alone and together.
+    """Return the gain of each step beyond the document's first algorithm, alone and together.
 
     Parameters
     ----------
@@ -338,7 +338,7 @@ def ablation(
 
 @checked
 def calibration(track: VelocityTrack, v: Real, skip: Index) -> dict[str, FloatArray]:
-    """Compare what one sensor's filter claims with what it does, at a constant velocity.
+    """Compare the errors of one sensor's filter with those that it reports, at constant velocity.
 
     Parameters
     ----------

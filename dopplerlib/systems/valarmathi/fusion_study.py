@@ -80,7 +80,7 @@ class FusionStudy:
 
     @checked
     def summary(self, path: str, snr_db: float) -> dict[str, dict[str, FloatArray]]:
-        """Return what `AlgorithmRuns.summary` would, of one cell."""
+        """Return errors and delays of one cell, in the form of `AlgorithmRuns.summary`."""
         levels = self.snrs_db.tolist()
         j = levels.index(_checks.one_of("snr_db", snr_db, levels))
         half = (reported().chosen.fixed_window - 1) / 2 * reported().stated.T
@@ -99,7 +99,7 @@ class FusionStudy:
         }
 
     def cells(self) -> dict[tuple[str, float], dict[tuple[int, str], FloatArray]]:
-        """Return what `cell_measures` would, by path and signal-to-noise ratio."""
+        """Return all measures by path and signal-to-noise ratio, in the form of `cell_measures`."""
         return {
             (path, float(snr_db)): {
                 (algorithm, measure): self.of(measure, path, algorithm)[j]
@@ -228,7 +228,7 @@ def saved_study() -> FusionStudy:
 
 
 def saved_failures() -> dict[tuple[str, int], tuple[FloatArray, tuple[ConfidenceInterval, ...]]]:
-    """Read which fraction of the runs fails where the errors begin to rise.
+    """Read the fractions of runs that fail where the errors begin to rise.
 
     Returns
     -------
@@ -271,21 +271,21 @@ def failure_limit(
     snrs_db : array_like, shape (S,)
         Signal-to-noise ratios in dB, rising.
     shares : sequence of ConfidenceInterval, length S
-        Share of failed runs at each.
+        Fraction of failed runs at each.
     limit : float, optional
-        Share from which an algorithm has failed; `failed_share` of `chosen` if None.
+        Fraction from which an algorithm has failed; `failed_share` of `chosen` if None.
 
     Returns
     -------
     ConfidenceInterval
-        Where the share falls to the limit for the last time, in dB, by linear interpolation; and
+        Where the fraction falls to the limit for the last time, in dB, by linear interpolation; and
         where the ends of its interval do.
 
     Raises
     ------
     ValueError
-        If an argument is not of the kind described, or the share or an end of its interval does not
-        pass the limit between the ratios.
+        If an argument is not of the kind described, or the fraction or an end of its interval does
+        not pass the limit between the ratios.
 
     Examples
     --------

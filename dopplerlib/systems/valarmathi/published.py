@@ -1,4 +1,4 @@
-"""What the document states, and what this book fills in, from ``data/valarmathi``."""
+"""Values that the document states or this book fills in, from ``data/valarmathi``."""
 
 from functools import cache
 
@@ -31,7 +31,7 @@ class Reported:
 
 @cache
 def reported() -> Reported:
-    """Return what the document states.
+    """Return the values that the document states, and those filled in.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The variance of the measurements from what the filter leaves of them: Eq 14 and its sign."""
+"""The variance of the measurements from the residuals of the filter: Eq 14 and its sign."""
 
 from typing import Annotated, Literal
 

@@ -20,7 +20,7 @@ FEEDBACK = ("none", "own", "fused")
 @checked
 @record
 class VelocityTrack:
-    """What the filters of one or two sensors make of their measurements.
+    """Estimates of the filters behind one or two sensors, and of their fusion.
 
     Attributes
     ----------
@@ -34,15 +34,15 @@ class VelocityTrack:
         Their covariances.
     P12 : ndarray, shape (runs, K, 2, 2)
         Covariance between the errors of the two filters, for a target that does move as they
-        suppose.
+        assume.
     fused_x : ndarray, shape (runs, K, 2)
         Naive fusion of the two; of one sensor its own state.
     fused_P : ndarray, shape (runs, K, 2, 2)
-        Covariance that the naive fusion believes in.
+        Covariance that the naive fusion reports.
     window : ndarray of int, shape (runs, sensors, K)
         Lengths of the windows that were used, in samples.
     innovation, S : ndarray, shape (runs, sensors, K)
-        Innovations in m/s and their supposed variances; NaN at the start.
+        Innovations in m/s and their variances as the filter reports them; NaN at the start.
     """
 
     first: Index
@@ -90,7 +90,7 @@ def filter_velocity(
     hop : int
         Samples from one measurement that is used to the next.
     scale : float
-        Factor to the supposed variance of the measurements.
+        Factor to the assumed variance of the measurements.
 
     Returns
     -------

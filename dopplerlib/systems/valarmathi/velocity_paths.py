@@ -1,4 +1,4 @@
-"""The courses of velocity that follow from what the document states and this book fills in."""
+"""Velocities over time, from values that the document states and those that this book fills in."""
 
 from typing import Annotated, Literal
 
@@ -18,7 +18,7 @@ Samples = Annotated[FloatArray, exactly(None)]
 @checked
 @record
 class VelocityPath:
-    """The course of a target's velocity, and which samples count for what.
+    """Velocity of a target over time, and the samples of each phase.
 
     Attributes
     ----------

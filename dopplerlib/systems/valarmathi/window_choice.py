@@ -1,4 +1,4 @@
-"""How the document judges windows: its error, and the table of the best windows."""
+"""The document's criterion for windows: its cumulative error, and the table of the best ones."""
 
 from typing import Annotated
 

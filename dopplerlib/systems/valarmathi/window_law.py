@@ -80,7 +80,7 @@ def law_rmse(window: Reals, acceleration: Reals, snr_db: Decibels) -> FloatArray
 
 @checked
 def linear_cost(accelerations: Rising, snrs_db: Rising, points: Count = 40) -> FloatArray:
-    """Return what linear interpolation of the best window costs between some nodes.
+    """Return the growth of the error by linear interpolation of the best window between nodes.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def linear_cost(accelerations: Rising, snrs_db: Rising, points: Count = 40) -> F
 
 @checked
 def plane_error(accelerations: Span, snrs_db: Span, points: Count = 40) -> FloatArray:
-    """Return how far the plane that fits the best windows best is off, relative to them.
+    """Return the relative error of the least-squares plane through the best windows.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Which window suits which acceleration and noise, by simulation."""
+"""The best window for each acceleration and noise, by simulation."""
 
 from typing import Literal
 

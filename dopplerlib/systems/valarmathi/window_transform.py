@@ -59,7 +59,7 @@ class FilteredDoppler:
 
     @property
     def delays(self) -> FloatArray:
-        """How long before the last sample the middle of each window is, in s, shape (W,)."""
+        """Time from the middle of each window to its last sample, in s, shape (W,)."""
         return (self.windows - 1) / 2 * reported().stated.T
 
 
@@ -69,7 +69,7 @@ def doppler_filter(
     windows: Lengths | None = None,
     first: Index | None = None,
 ) -> FilteredDoppler:
-    """Return what the document's Doppler filter makes of IQ samples.
+    """Return the velocities that the document's Doppler filter finds in IQ samples.
 
     A transform of the last samples, padded with zeros, at every sample; its highest bin from zero
     to the sampling rate, for targets that approach; the vertex of the parabola through the

@@ -1,4 +1,4 @@
-"""What the printed settings and formulas of the thesis say, without a simulation."""
+"""Evidence from the printed settings and formulas of the thesis, without a simulation."""
 
 import numpy as np
 
@@ -66,7 +66,7 @@ def settings_and_formulas():
 
 
 def gate_growth(own, early=2, late=450):
-    """Return how much the half-width of the printed gate grows while the covariance settles.
+    """Return the half-width of the printed gate at a late scan over that at an early one.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def _across(baseline):
 
 
 def _influence_ratio():
-    """Return how far a position follows the far radar's range, over how far the near one's."""
+    """Return the sensitivity of a position to the far radar's range over that to the near one's."""
     p = np.array([*reported().quoted.range.compared, 0.0, 0.0])
     follows = np.linalg.inv(range_rate_jacobian(p, radar_positions())[:, 0, :2])
     far, near = np.linalg.norm(follows, axis=0)
@@ -145,7 +145,7 @@ def _printed_angle_innovation():
 
 
 def _difference_bias():
-    """Return the error of a rate from differences at the first scan, in deviations of its noise."""
+    """Return the error of a differenced rate at the first scan, in noise standard deviations."""
     T = reported().scenario.tracks.T
     first, second = range_rate(straight_track([0.0, T]), radar_positions()[:1])[:, 0]
     return float(((second[0] - first[0]) / T - first[1]) / noise_std(first[0])[1])

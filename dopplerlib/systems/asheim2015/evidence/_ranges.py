@@ -75,7 +75,7 @@ def found(records, tracks, rng):
 
 
 def _largest_step_difference(z, own):
-    """Return how far the pseudo-measurement filter is from a linear one, over a record, in m."""
+    """Return the largest difference of the pseudo-measurement filter from a linear one."""
     F, R = ncv_transition(own.T, dim=1), np.diag(own.R(1.0))
 
     def step(k, state):

@@ -53,7 +53,7 @@ def found(runs, rng):
 
 
 def gate_on_a_walk(runs, rng):
-    """Return in what share of walks past one radar the gate is good for the filtered ranges.
+    """Return the fractions of walks in which the gate improves the filtered ranges of one radar.
 
     More even: with a smaller root mean square of the second differences up to the gap.
     """

@@ -37,7 +37,7 @@ def chain_evidence(rng: np.random.Generator) -> dict[str, object]:
 
 
 def _loudness():
-    """Return how much louder an echo as 1 / r^4 becomes, for the sensor at which it does least."""
+    """Return the growth of an echo's power as 1 / r^4, for the sensor at which it is least."""
     s = reported().scenario
     r = np.linalg.norm(s.truth[:, None, :3] - s.array.positions, axis=-1)
     return float(np.min((r[0] / r.min(axis=0)) ** 4))

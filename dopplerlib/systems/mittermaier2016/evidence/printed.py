@@ -1,4 +1,4 @@
-"""Evidence without chance: what the printed and the drawn numbers say about each other."""
+"""Evidence without random numbers: consistency of the printed and the drawn values."""
 
 import numpy as np
 
@@ -82,7 +82,7 @@ def _figure6():
 
 
 def _chi_square():
-    """Return moments by sums over the density, which knows nothing of their formulas."""
+    """Return moments of chi-square by sums over its density, independent of their formulas."""
     from scipy.special import chdtr
 
     edges = np.linspace(0, 200, 200_001)
@@ -96,7 +96,7 @@ def _chi_square():
 
 
 def _window():
-    """Return how far the mean of ten samples is from the first, in standard errors of the mean."""
+    """Return the mean of ten samples minus the first, in standard errors of the mean."""
     s, p = reported().scenario, reported().figure3
     states = np.zeros((len(p.x), len(p.y), 6))
     states[..., 0], states[..., 1] = p.x[:, None], p.y
@@ -117,7 +117,7 @@ def _drift(x, array, T, sigma_f, samples=10):
 
 
 def _covariance():
-    """Return what the maps of Fig 3 suggest for the variance of one axis, in three ways."""
+    """Return the variance of one axis as estimated from the maps of Fig 3, in three ways."""
     p = reported().figure3
     error = np.where(p.below, 0.0, p.error)
     left, right = (panel[~np.isnan(panel)] ** 2 / 2 for panel in error)  # two axes, in a plane

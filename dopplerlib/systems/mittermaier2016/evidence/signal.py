@@ -1,4 +1,4 @@
-"""Evidence on the signal chain: a tone in noise, and how well its frequency can be told."""
+"""Evidence on the signal chain: accuracy of the frequency estimate of a tone in noise."""
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def signal_evidence(rng: np.random.Generator) -> dict[str, object]:
 
 
 def _dependence(children):
-    """Return what twice the signal-to-noise ratio and twice the length leave of the variance."""
+    """Return the variance ratios for twice the signal-to-noise ratio and for twice the length."""
     settings = ((100, 10.0), (100, 10.0 + 10 * np.log10(2)), (200, 10.0))
     usual, stronger, longer = (
         _errors(ml_frequency, n, child, level) ** 2

@@ -72,7 +72,7 @@ def _corners(error, p):
 
 
 def _share(error_map, p, panel, rng):
-    """Return the share of places above 0.1 m, in maps put together from our draws of each place."""
+    """Return the fraction of places above 0.1 m, in maps combined from our draws of each place."""
     known = ~np.isnan(p.error[panel]) | p.below[panel]
     published = float(fraction_above(p.error[panel], [0.1], known)[0])
     above = error_map.position[known] > 0.1
@@ -82,14 +82,14 @@ def _share(error_map, p, panel, rng):
 
 
 def _improved(few, many):
-    """Return the share of places at which the median error of our draws is smaller."""
+    """Return the fraction of places at which the median error of our draws is smaller."""
     few, many = (np.median(m.position, axis=-1) for m in (few, many))
     there = ~np.isnan(few)
     return proportion_interval((many < few)[there])
 
 
 def _ratio(longer, shorter):
-    """Return the median over the places of how the error of a longer record compares."""
+    """Return the median over the places of the error of a longer record over that of a shorter."""
     longer, shorter = (np.median(m.position, axis=-1) for m in (longer, shorter))
     ratio = longer / shorter
     return quantile_interval(ratio[~np.isnan(ratio)])

@@ -48,7 +48,7 @@ def _starts():
 
 
 def _readings(rng):
-    """Return what whole runs say, for each reading: with or without the gate, from either start."""
+    """Return statistics of whole runs by interpretation: with or without gate, either start."""
     found = {}
     *children, drawn_run = rng.spawn(5)
     gates = {"no gate": None, "two-sided gate": "two-sided"}
@@ -96,7 +96,7 @@ def _of_any_run(result):
 
 
 def _of_the_drawn_run(result):
-    """Return what compares with the curves of Fig 6: our numbers and the drawn one."""
+    """Return the quantities that the curves of Fig 6 show: those of our runs and the drawn ones."""
     drawn = reported().figure6
     value, skipped = result.track.nis, ~result.track.updated
     return {
@@ -206,7 +206,7 @@ def _initial_nees(rng):
 
 
 def _updates(rng, runs=200):
-    """Return what a tangent neglects, in standard deviations of a measurement, now and later."""
+    """Return linearization errors at the start and later, and the fraction of consistent NEES."""
     s = reported().scenario
     result = run_example(runs, rng=rng, keep=("P",))
     k = round(0.5 / s.T)
@@ -231,7 +231,7 @@ def _neglected(x, P, rng):
 
 
 def _right_filter(rng, runs=500):
-    """Return what a filter shows that starts almost at the truth and knows how well."""
+    """Return innovations and NIS of a consistent filter, which starts close to the truth."""
     s = reported().scenario
     deviation = 1e-3  # m and m/s
     child, noise = rng.spawn(2)

@@ -1,4 +1,4 @@
-"""Interpretations of what the paper leaves open, and ablations of its filter."""
+"""Interpretations of points that the paper leaves open, and ablations of its filter."""
 
 from ...._lazy import attach
 

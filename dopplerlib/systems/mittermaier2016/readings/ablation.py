@@ -1,4 +1,4 @@
-"""Why the filter of the paper is too sure: its causes, each with a switch.
+"""Causes of the overconfidence of the paper's filter, each with a switch.
 
 `ekf` is what the paper prints. `ablated_ekf` is the same filter in plain NumPy, with the two sides
 of linearization apart: where the tangent is taken, and how much the world bends away from it.
@@ -164,18 +164,18 @@ def ablated_ekf(
 @checked
 @record
 class Consistency:
-    """What many runs of one filter gave, thinned in time.
+    """Estimates, NEES and NIS of many runs of one filter, thinned in time.
 
     Attributes
     ----------
     time : ndarray, shape (M,)
-        The moments kept, in s from the first sample.
+        The times kept, in s from the first sample.
     truth : ndarray, shape (M, 6)
         True states.
     x : ndarray, shape (runs, M, 6)
         Estimates.
     P : ndarray, shape (runs or 1, M, 6, 6)
-        Their covariances as the filter believes them.
+        Their covariances as the filter reports them.
     nees : ndarray, shape (runs, M)
         Normalized estimation error squared.
     nis : ndarray, shape (runs, M)
@@ -227,10 +227,10 @@ def consistency_runs(
     noise : {"shared", "per_axis"}
         See `constant_velocity`.
     sigma_a : float, optional
-        Standard deviation of the push that the filter believes, in m/s^2; that of the scenario if
+        Standard deviation of the push that the filter assumes, in m/s^2; that of the scenario if
         None.
     sigma_f : array_like, broadcast to (K, N), optional
-        Standard deviation that the filter believes, in Hz; that of the scenario if None.
+        Standard deviation that the filter assumes, in Hz; that of the scenario if None.
     chunk : int
         Runs filtered at a time, so that memory does not grow with `runs`.
     **switches
@@ -296,7 +296,7 @@ def matched_P0() -> FloatArray:
 
 @checked
 def range_claims(result: Consistency) -> tuple[FloatArray, FloatArray]:
-    """Return how far the range is off, and how far the filter says that it is.
+    """Return the actual error of the range, and the standard deviation that the filter reports.
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def range_claims(result: Consistency) -> tuple[FloatArray, FloatArray]:
         its absolute value, divided by that of a standard normal number, so that lost runs count
         no more than others.
     claimed : ndarray, shape (M,)
-        Median over the runs of its standard deviation as the filter believes it, in m.
+        Median over the runs of its standard deviation as the filter reports it, in m.
 
     Examples
     --------

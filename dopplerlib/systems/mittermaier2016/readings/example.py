@@ -1,4 +1,4 @@
-"""Which reading of Section 4 gives runs like the one that Fig 6 shows.
+"""Interpretations of Section 4 whose runs resemble the one that Fig 6 shows.
 
 What the paper leaves open is drawn at random for each run of ours. All runs are described by the
 same few numbers as the published one, and the runs nearest to it are asked what they were made of.
@@ -105,7 +105,7 @@ class ExampleReadings:
 
     @checked
     def shares(self, count: Count, **how: Any) -> dict[str, dict[str, ConfidenceInterval]]:
-        """Return the share of every option among the nearest runs.
+        """Return the fraction of every option among the nearest runs.
 
         Parameters
         ----------
@@ -303,7 +303,7 @@ def _covariance(name, rng):
 
 
 def _deviations(raised):
-    """Return the standard deviation that the filter believes, shape (1001, 1)."""
+    """Return the standard deviation that the filter reports, shape (1001, 1)."""
     s = reported().scenario
     deviation = np.full((s.samples, 1), s.sigma_f)
     deviation[: (0, 10, 100)[raised]] *= np.sqrt(10)

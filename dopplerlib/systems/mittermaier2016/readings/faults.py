@@ -130,7 +130,7 @@ def faulty_filters(
         What is wrong.
     track : Track
     F, Q : ndarray, shape (6, 6)
-        Motion as the filter believes it.
+        Motion as the filter assumes it.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Which reading of Section 3.4 explains the maps of Fig 3 best, by likelihood."""
+"""Interpretations of Section 3.4, ranked by the likelihood of the maps of Fig 3."""
 
 from typing import Annotated, Literal
 
@@ -54,7 +54,7 @@ Width = Annotated[float, between(0.001, 100)]
 @checked
 @record
 class MapReading:
-    """One reading of the figure and how well it explains what is drawn.
+    """An interpretation of the figure, and its log-likelihood below that of the best one.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ def map_score(
     width : float
         Standard deviation of the kernel that smooths the draws, in powers of ten.
     stray : float
-        Share of values that may be anything: half of them below the lowest contour, half within
+        Fraction of values that may be anything: half of them below the lowest contour, half within
         three powers of ten above it.
 
     Returns

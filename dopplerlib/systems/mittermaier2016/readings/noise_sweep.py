@@ -1,4 +1,4 @@
-"""Which reading of Fig 4 do the published dots support?"""
+"""Interpretations of Fig 4, ranked by the likelihood of the published dots."""
 
 from dataclasses import replace
 from functools import cache
@@ -151,7 +151,7 @@ def dots_structure(position: Dots, velocity: Dots) -> DotsStructure:
 
 @checked
 def dots_log_likelihood(model: DotsStructure, position: Dots, velocity: Dots) -> float:
-    """Return how likely dots are under a model, as a sum over independent sequences.
+    """Return the log-likelihood of dots under a model, a sum over independent sequences.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def sweep_score(
     rng: np.random.Generator,
     resamples: Count = 200,
 ) -> tuple[float, float, float]:
-    """Return how likely the published dots are under our simulation of a reading.
+    """Return the log-likelihood of the published dots under our simulation of an interpretation.
 
     Parameters
     ----------
