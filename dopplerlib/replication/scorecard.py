@@ -8,7 +8,7 @@ from .. import _checks
 from .._records import record
 from ..evaluation.intervals import ConfidenceInterval
 from ._cells import badge, link, table
-from .claims import VERDICTS, Claim
+from .claims import VERDICTS, Claim, check_claim
 from .verdicts import Judgment
 
 
@@ -24,7 +24,7 @@ class Scorecard:
     Raises
     ------
     ValueError
-        If one is no `Judgment` of a `Claim`.
+        If one is no `Judgment` of a `Claim`, or holds what neither may.
 
     Examples
     --------
@@ -42,6 +42,9 @@ class Scorecard:
         """Check the fields."""
         judgments = _checks.records("judgments", self.judgments, Judgment)
         _checks.records("claims of judgments", [one.claim for one in judgments], Claim)
+        for one in judgments:
+            check_claim(f"judgments, claim {one.claim.id!r},", one.claim)
+            _checks.one_of("verdict of judgments", one.verdict, VERDICTS)
         object.__setattr__(self, "judgments", judgments)
 
     @property

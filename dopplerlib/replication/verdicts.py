@@ -100,11 +100,11 @@ def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
         return _judge_draw(claim, published, evidence)
     if claim.kind == "relation":
         if isinstance(evidence, (Readings, Draws)):
-            raise _wrong(claim, "an ConfidenceInterval or a float", evidence)
+            raise _wrong(claim, "a ConfidenceInterval or a float", evidence)
         if not isinstance(evidence, ConfidenceInterval):
             evidence = ConfidenceInterval(*[_checks.one_number(_name(claim), evidence)] * 3)
         if not evidence.low <= evidence.value <= evidence.high:  # as it is not if one is NaN
-            raise _wrong(claim, "an ConfidenceInterval whose value lies between its ends", evidence)
+            raise _wrong(claim, "a ConfidenceInterval whose value lies between its ends", evidence)
         return _judge_relation(claim, published, evidence)
     if isinstance(evidence, (ConfidenceInterval, Draws)):
         raise _wrong(claim, "a number", evidence)

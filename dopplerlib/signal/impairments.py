@@ -135,7 +135,7 @@ def image_rejection(gain_db: float, phase_deg: float) -> float:
     Returns
     -------
     float
-        Ratio of powers, not in dB; infinite for an ideal mixer.
+        Ratio of powers, not in dB; infinite for a mixer that is ideal to rounding.
 
     Raises
     ------
@@ -149,7 +149,7 @@ def image_rejection(gain_db: float, phase_deg: float) -> float:
     """
     g, phi = _imbalance(gain_db, phase_deg)
     kept, mirrored = np.abs(1 + g * np.exp(1j * phi)), np.abs(1 - g * np.exp(1j * phi))
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         return float((kept / mirrored) ** 2)
 
 

@@ -162,11 +162,15 @@ def trace(package, most=3):
     """Return {(name, module): calls} that the Examples in `package` make, the shortest first.
 
     The names that the examples import are wrapped while they run. Constructors are wrapped in
-    their class, so that records that a function makes are caught as well.
+    their class, so that records that a function makes are caught as well. What a test before has
+    left in a cache would not be made again.
     """
     calls = {}
     with contextlib.ExitStack() as stack:
         for module in _all_modules():
+            for value in vars(module).values():
+                if inspect.isfunction(getattr(value, "__wrapped__", None)):
+                    getattr(value, "cache_clear", lambda: None)()
             for name, value in public(module):
                 if inspect.isclass(value):
                     _wrap_class(value, calls, stack)

@@ -126,7 +126,7 @@ def test_every_claim_needs_evidence_and_evidence_a_claim():
         (NUMBER, Draws(HUNDRED), "for 'a', a deterministic claim, must be a number"),
         (NUMBER, [0.25, 0.25], r"must be numbers of shape \(\)"),
         (NUMBER, np.nan, "the evidence for 'a' must be finite, got nan"),
-        (LIMIT, Draws(HUNDRED), "for 'b', a relation claim, must be an ConfidenceInterval"),
+        (LIMIT, Draws(HUNDRED), "for 'b', a relation claim, must be a ConfidenceInterval"),
         (RUN, 50.0, "for 'c', a random claim, must be Draws"),
         (RUN, Draws(HUNDRED, published=50.0), "must be given by the claim .*, got it twice"),
         (replace(RUN, published=None), Draws(HUNDRED), "got it not at all"),

@@ -97,7 +97,13 @@ def test_an_unknown_command_is_found(text, found):
 
 
 def test_the_help_lists_every_target_but_the_two_steps_of_test():
-    shown = subprocess.run(["make", "help"], cwd=ROOT, capture_output=True, text=True, check=True)
+    shown = subprocess.run(
+        ["make", "--no-print-directory", "help"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     listed = [line.split()[0] for line in shown.stdout.splitlines()]
     assert set(listed) == TARGETS - {"tests", "compile"}
     assert len(listed) == len(set(listed)) <= 15
