@@ -74,7 +74,10 @@ class FrequencyBenchmark:
 
     def __post_init__(self):
         """Check that there is a number for each level."""
-        for name, values in [("bound", self.bound), *self.ratio.items(), *self.outliers.items()]:
+        levels = {"bound": self.bound}
+        levels |= {f"ratio[{name!r}]": values for name, values in self.ratio.items()}
+        levels |= {f"outliers[{name!r}]": values for name, values in self.outliers.items()}
+        for name, values in levels.items():
             if len(values) != len(self.snr_db):
                 raise ValueError(f"{name} must have {len(self.snr_db)} levels, got {len(values)}")
 

@@ -152,7 +152,8 @@ def _format(digits):
     if not isinstance(digits, str):
         return _checks.count("digits", digits, 100, least=0)
     try:
-        format(1.0, digits.removeprefix("±"))
+        for number in (1.0, 1):  # "1.0", say, is no format of a whole number
+            format(number, digits.removeprefix("±"))
     except ValueError:
         raise ValueError(f"digits must be decimals or a format, got {digits!r}") from None
     return digits

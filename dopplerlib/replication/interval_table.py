@@ -56,11 +56,16 @@ def interval_table(
         if set(other) != set(names[0]):
             raise ValueError(f"rows must hold the same quantities, got {names[0]} and {other}")
 
-    def cell(values):
-        one = (proportion_interval if np.asarray(values).dtype == bool else interval)(values)
+    def cell(label, name):
+        values = rows[label][name]
+        try:
+            one = (proportion_interval if np.asarray(values).dtype == bool else interval)(values)
+        except ValueError as error:
+            where = f"rows[{label!r}][{name!r}]"
+            raise ValueError(f"{where} must hold a number for each run: {error}") from error
         return f"{_short(one.value)} ({_short(one.low)} to {_short(one.high)})"
 
-    cells = {label: [cell(one[name]) for name in names[0]] for label, one in rows.items()}
+    cells = {label: [cell(label, name) for name in names[0]] for label in rows}
     columns = names[0]
     if _checks.one_boolean("transposed", transposed):
         cells = dict(zip(names[0], zip(*cells.values(), strict=True), strict=True))

@@ -63,6 +63,21 @@ class ExampleReadings:
     summary: Annotated[FloatArray, exactly(None, len(SUMMARIES))]
     published: Annotated[FloatArray, exactly(len(SUMMARIES))]
 
+    def __post_init__(self):
+        """Check that each run has an answer to each question."""
+        for question, answers in OPTIONS.items():
+            if question not in self.option:
+                raise ValueError(f"option must answer {question!r}, got {list(self.option)}")
+            name = f"option[{question!r}]"
+            answer = _checks.real(name, self.option[question])
+            if (
+                answer.shape != self.summary.shape[:1]
+                or not np.isin(answer, range(len(answers))).all()
+            ):
+                raise ValueError(
+                    f"{name} must hold one of 0 to {len(answers) - 1} for each run, got {answer}"
+                )
+
     @checked
     def nearest(
         self, count: Count, *, decorrelate: bool = True, only: Iterable[Index] | None = None
