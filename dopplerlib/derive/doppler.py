@@ -5,6 +5,9 @@ Equation numbers are those of Mittermaier et al. (2016), doi:10.5194/ars-14-39-2
 
 import sympy as sp
 
+from .._hints import checked
+from . import _arguments
+from ._arguments import Expression
 from .block import Block, Stage
 
 STATE = sp.symbols("x y z v_x v_y v_z", real=True)
@@ -34,19 +37,37 @@ def doppler_gradient():
     return [sp.diff(doppler_shift(), component) for component in STATE]
 
 
-def in_line_of_sight(expression):
+@checked
+def in_line_of_sight(expression: Expression) -> sp.Expr:
     """Rewrite `expression` with ``d = s - p``, inverse range ``1/|d|``, and 2/lambda as one name.
 
     The three are what a person would compute first. Naming them leaves only sums and products,
     so that every processor which follows IEEE 754 computes the same bits.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        Of `STATE`, `SENSOR` and `WAVELENGTH`.
+
+    Raises
+    ------
+    ValueError
+        If `expression` is no expression, or is not finite.
+
+    Examples
+    --------
+    >>> from dopplerlib.derive.doppler import SENSOR, STATE, in_line_of_sight
+    >>> in_line_of_sight((SENSOR[0] - STATE[0]) * STATE[3])
+    d_x*v_x
     """
     d = LINE_OF_SIGHT
     to_line_of_sight = {p: s - d_i for p, s, d_i in zip(STATE[:3], SENSOR, d, strict=True)}
-    return sp.factor_terms(
+    named = sp.factor_terms(
         expression.subs(to_line_of_sight, simultaneous=True)
         .subs(sum(d_i**2 for d_i in d), INVERSE_RANGE**-2)
         .subs(WAVELENGTH, 2 / DOPPLER_PER_SPEED)
     )
+    return _arguments.expression("expression", named)
 
 
 def line_of_sight_stage():
@@ -73,14 +94,50 @@ def gradient_stage():
     )
 
 
-def as_written(expression):
-    """Rewrite `expression` as by hand: with ``d = s - p``, the range ``rho = |d|``, and lambda."""
+@checked
+def as_written(expression: Expression) -> sp.Expr:
+    """Rewrite `expression` as by hand: with ``d = s - p``, the range ``rho = |d|``, and lambda.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        Of `STATE`, `SENSOR` and `WAVELENGTH`.
+
+    Raises
+    ------
+    ValueError
+        If `expression` is no expression, or is not finite.
+
+    Examples
+    --------
+    >>> from dopplerlib.derive.doppler import as_written, doppler_shift
+    >>> as_written(doppler_shift())
+    2*(d_x*v_x + d_y*v_y + d_z*v_z)/(lambda*rho)
+    """
     by_hand = {INVERSE_RANGE: 1 / RANGE, DOPPLER_PER_SPEED: 2 / WAVELENGTH}
     return in_line_of_sight(expression).subs(by_hand)
 
 
-def equations(gradient=True):
-    """Return the formulas behind a block as (left side, right side), for its docstring."""
+@checked
+def equations(gradient: bool = True) -> tuple:
+    """Return the formulas behind a block as (left side, right side), for its docstring.
+
+    Parameters
+    ----------
+    gradient : bool
+        Whether the derivatives are among them.
+
+    Raises
+    ------
+    ValueError
+        If `gradient` is not a boolean.
+
+    Examples
+    --------
+    >>> from dopplerlib.derive.doppler import equations
+    >>> equations(gradient=False)[0]
+    (d_x, s_x - x)
+    """
     d, h = LINE_OF_SIGHT, sp.Symbol("h")
     lines = [(d_i, s - p) for d_i, s, p in zip(d, SENSOR, STATE[:3], strict=True)]
     lines += [(RANGE, sp.sqrt(sum(d_i**2 for d_i in d))), (h, as_written(doppler_shift()))]

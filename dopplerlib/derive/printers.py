@@ -7,88 +7,49 @@ last bit (``+ - * /`` and the square root). So the languages agree exactly, not 
 import textwrap
 
 import sympy as sp
-from sympy.printing.c import C99CodePrinter
-from sympy.printing.jscode import JavascriptCodePrinter
-from sympy.printing.precedence import PRECEDENCE
-from sympy.printing.pycode import PythonCodePrinter
+
+from .._hints import Index, checked
+from ._arguments import Name
+from ._exact import C99, JavaScript, Python
+from .block import Block
 
 WIDTH = 79  # what a page of the book shows without a scroll bar
 
 
-_NODES = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow)
-_EXACT_INTEGER = 2**53  # up to here a double holds every integer
+@checked
+def python_function(block: Block) -> str:
+    """Return `block` as a Python function of numbers or of arrays that broadcast together.
 
+    Parameters
+    ----------
+    block : Block
+        Of sums, products, quotients, powers of n/2 and square roots.
 
-class _Exact:
-    """Print only what every language computes to the last bit, or raise NotImplementedError.
+    Raises
+    ------
+    ValueError
+        If something in `block` has no exactly rounded form, or a name is not to be printed.
 
-    A power becomes a product, because pow() may round differently elsewhere: x**3 is x*x*x,
-    x**(-3/2) is 1/(x*sqrt(x)).
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> from dopplerlib.derive.block import Block, Stage
+    >>> from dopplerlib.derive.printers import python_function
+    >>> x, cube = sp.symbols("x cube")
+    >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
+    >>> program = {}
+    >>> exec(python_function(block), program)
+    >>> program["power"](2)
+    8
     """
-
-    def __init__(self):
-        super().__init__({"error_on_reserved": True})
-
-    def doprint(self, expression):
-        for node in sp.preorder_traversal(expression):
-            if not isinstance(node, _NODES):
-                raise NotImplementedError(f"no exactly rounded form of {node} in {expression}")
-        return super().doprint(expression)
-
-    def parenthesize(self, item, level, strict=False):
-        # SymPy believes that a power binds more tightly than a product: ours is a product.
-        if item.is_Pow and item.exp != sp.S.Half:
-            return f"({self._print(item)})"
-        return super().parenthesize(item, level, strict)
-
-    def _print_Pow(self, expression, **kwargs):
-        base, exponent = expression.args
-        if not (2 * exponent).is_Integer:
-            raise NotImplementedError(f"no exactly rounded form of {expression}")
-        whole, half = divmod(int(2 * abs(exponent)), 2)
-        factors = [self.parenthesize(base, PRECEDENCE["Atom"], strict=True)] * whole
-        factors += [f"{self.square_root}({self._print(base)})"] * half
-        product = "*".join(factors)
-        if exponent > 0:
-            return product
-        return f"1/{product}" if len(factors) == 1 else f"1/({product})"
-
-    def _print_Integer(self, expression):
-        return self._number(expression, super()._print_Integer)
-
-    def _print_Rational(self, expression):
-        return self._number(expression, super()._print_Rational)
-
-    def _number(self, number, write):
-        if max(abs(number.p), number.q) > _EXACT_INTEGER:
-            raise NotImplementedError(f"no exact double for a part of {number}")
-        return write(number)
-
-    def _print_Float(self, expression):
-        return repr(float(expression))  # the shortest text that reads back as the same double
-
-
-class _Python(_Exact, PythonCodePrinter):
-    square_root = "sqrt"
-
-
-class _C99(_Exact, C99CodePrinter):
-    square_root = "sqrt"
-
-
-class _JavaScript(_Exact, JavascriptCodePrinter):
-    square_root = "Math.sqrt"
-
-
-def python_function(block):
-    """Return `block` as a Python function of numbers or of arrays that broadcast together."""
-    printer = _Python()
+    printer = Python()
     body = [*_docstring(block), *_commented(block, printer)]
     body.append("return " + ", ".join(_names(block.outputs, printer)))
-    return _def(block.name, _names(block.inputs, printer), body)
+    return _def(printer.name(block.name), _names(block.inputs, printer), body)
 
 
-def python_lanes(block, places):
+@checked
+def python_lanes(block: Block, places: dict[Name, tuple[str, Index]]) -> str:
     """Return `block` as a Python function on work arrays, for one lane of many.
 
     Lane `lane` of the quantity in row i of an array `work` stands at ``work[i * lanes + lane]``.
@@ -102,8 +63,36 @@ def python_lanes(block, places):
         Its outputs have places. Its inputs have places too, or else are arguments of the function.
     places : dict
         Name of the array and row number of each symbol that lives in an array.
+
+    Raises
+    ------
+    ValueError
+        As by `python_function`; or if `places` leaves out an output, or an array has the name of
+        something else.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> from dopplerlib.derive.block import Block, Stage
+    >>> from dopplerlib.derive.printers import python_lanes
+    >>> x, cube = sp.symbols("x cube")
+    >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
+    >>> program, work = {}, [2, None]
+    >>> exec(python_lanes(block, {x: ("work", 0), cube: ("work", 1)}), program)
+    >>> program["power"](work, lanes=1, lane=0)
+    >>> work
+    [2, 8]
     """
-    printer = _Python()
+    printer = Python()
+    for symbol in block.outputs:
+        if symbol not in places:
+            raise ValueError(f"places must hold every output of the block, got none for {symbol}")
+    names = block.names()
+    for array, _ in places.values():
+        if not printer.takes(array) or array in names:
+            raise ValueError(
+                f"places must name arrays by identifiers that nothing else has, got {array!r}"
+            )
     inputs = [symbol for symbol in block.inputs if symbol in places]
     arguments = [symbol for symbol in block.inputs if symbol not in places]
     arrays = dict.fromkeys(places[symbol][0] for symbol in (*inputs, *block.outputs))
@@ -113,12 +102,40 @@ def python_lanes(block, places):
         *_commented(block, printer),
         *(f"{_place(*places[symbol])} = {printer.doprint(symbol)}" for symbol in block.outputs),
     ]
-    return _def(block.name, [*arrays, "lanes", "lane", *_names(arguments, printer)], body)
+    head = [*arrays, "lanes", "lane", *_names(arguments, printer)]
+    return _def(printer.name(block.name), head, body)
 
 
-def c99_function(block):
-    """Return `block` as a C99 function that writes its outputs to an array."""
-    printer = _C99()
+@checked
+def c99_function(block: Block) -> str:
+    """Return `block` as a C99 function that writes its outputs to an array.
+
+    Parameters
+    ----------
+    block : Block
+        As for `python_function`.
+
+    Raises
+    ------
+    ValueError
+        As by `python_function`.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> from dopplerlib.derive.block import Block, Stage
+    >>> from dopplerlib.derive.printers import c99_function
+    >>> x, cube = sp.symbols("x cube")
+    >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
+    >>> print(c99_function(block).partition("void ")[2])
+    power(double x, double *out)
+    {
+        const double cube = x*x*x;
+        out[0] = cube;
+    }
+    <BLANKLINE>
+    """
+    printer = C99()
     body = [
         f"const double {printer.doprint(name)} = {printer.doprint(value)};"
         for _, assignments in block.straight_line()
@@ -126,20 +143,46 @@ def c99_function(block):
     ]
     body += [f"out[{i}] = {name};" for i, name in enumerate(_names(block.outputs, printer))]
     arguments = [f"double {name}" for name in _names(block.inputs, printer)]
-    head = f"void {block.name}({', '.join([*arguments, 'double *out'])})"
+    head = f"void {printer.name(block.name)}({', '.join([*arguments, 'double *out'])})"
     return "#include <math.h>\n\n" + _wrapped(head) + "\n{\n" + _indented(body) + "\n}\n"
 
 
-def javascript_function(block):
-    """Return `block` as a JavaScript function that returns an array of its outputs."""
-    printer = _JavaScript()
+@checked
+def javascript_function(block: Block) -> str:
+    """Return `block` as a JavaScript function that returns an array of its outputs.
+
+    Parameters
+    ----------
+    block : Block
+        As for `python_function`.
+
+    Raises
+    ------
+    ValueError
+        As by `python_function`.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> from dopplerlib.derive.block import Block, Stage
+    >>> from dopplerlib.derive.printers import javascript_function
+    >>> x, cube = sp.symbols("x cube")
+    >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
+    >>> print(javascript_function(block))
+    function power(x) {
+        const cube = x*x*x;
+        return [cube];
+    }
+    <BLANKLINE>
+    """
+    printer = JavaScript()
     body = [
         f"const {printer.doprint(name)} = {printer.doprint(value)};"
         for _, assignments in block.straight_line()
         for name, value in assignments
     ]
     body.append("return [" + ", ".join(_names(block.outputs, printer)) + "];")
-    head = f"function {block.name}({', '.join(_names(block.inputs, printer))}) {{"
+    head = f"function {printer.name(block.name)}({', '.join(_names(block.inputs, printer))}) {{"
     return _wrapped(head) + "\n" + _indented(body) + "\n}\n"
 
 

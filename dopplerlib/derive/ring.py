@@ -12,6 +12,8 @@ and a Fisher information of a constant state has rank five at most.
 
 import sympy as sp
 
+from .._hints import checked
+from ._arguments import Expression
 from .doppler import SENSOR, STATE, WAVELENGTH, doppler_gradient, doppler_shift
 
 RADIUS = sp.Symbol("r", positive=True)
@@ -21,14 +23,35 @@ TURN = sp.Symbol("alpha", real=True)
 
 INVARIANTS = sp.symbols("A y z w v_y v_z", real=True)
 
+_State = tuple[Expression, Expression, Expression, Expression, Expression, Expression]
+
 
 def sensor_on_circle():
     """Return the position of a sensor at `ANGLE`, counted from the y axis towards the z axis."""
     return sp.Matrix([0, RADIUS * sp.cos(ANGLE), RADIUS * sp.sin(ANGLE)])
 
 
-def invariants(state=STATE):
-    """Return what a ring sees of a state: p.p + r^2, y, z, p.v, v_y and v_z."""
+@checked
+def invariants(state: _State = STATE) -> sp.Matrix:
+    """Return what a ring sees of a state: p.p + r^2, y, z, p.v, v_y and v_z.
+
+    Parameters
+    ----------
+    state : iterable of six sympy.Expr
+        In the order of `STATE`.
+
+    Raises
+    ------
+    ValueError
+        If `state` does not hold six finite expressions.
+
+    Examples
+    --------
+    >>> from dopplerlib.derive.doppler import STATE
+    >>> from dopplerlib.derive.ring import invariants
+    >>> invariants(STATE).T
+    Matrix([[r**2 + x**2 + y**2 + z**2, y, z, v_x*x + v_y*y + v_z*z, v_y, v_z]])
+    """
     p, v = sp.Matrix(state[:3]), sp.Matrix(state[3:])
     return sp.Matrix([p.dot(p) + RADIUS**2, p[1], p[2], p.dot(v), v[1], v[2]])
 

@@ -6,10 +6,14 @@ coefficients. And the Doppler shifts of sensors in a plane, expanded in the size
 agree to second order for a state and its twin, which `dopplerlib.model.twin` has as numbers.
 """
 
+from typing import Annotated
+
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
+from .._hints import checked, up_to
 from . import ring
+from ._arguments import RationalMatrix
 
 POINT = sp.Symbol("zeta")  # exp(i varphi) for a sensor at the angle varphi
 SIZE = sp.Symbol("epsilon", positive=True)  # scale of the array
@@ -45,8 +49,28 @@ def ring_harmonics():
     return sp.Matrix(columns).T
 
 
-def rank(matrix):
-    """Return the rank of a matrix of rational functions, for generic values of its symbols."""
+@checked
+def rank(matrix: RationalMatrix) -> int:
+    """Return the rank of a matrix of rational functions, for generic values of its symbols.
+
+    Parameters
+    ----------
+    matrix : sympy.Matrix
+        Its numbers are fractions: of decimals no rank is exact.
+
+    Raises
+    ------
+    ValueError
+        If `matrix` is no matrix, or an entry is no rational function.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> from dopplerlib.derive.snapshot import rank
+    >>> x = sp.Symbol("x")
+    >>> rank(sp.Matrix([[1, x], [1 / x, 1]]))
+    1
+    """
     return DomainMatrix.from_Matrix(matrix).to_field().rank()
 
 
@@ -61,11 +85,28 @@ def prove_harmonics_miss_the_family():
     return (ring_harmonics() @ family_of_invariants()).expand()
 
 
-def prove_twin_agrees(order):
+@checked
+def prove_twin_agrees(order: Annotated[int, up_to(3, least=0)]) -> sp.Expr:
     """Return the term of this order, in the size of a plane array, of the shifts' difference.
 
     The two states share B = p.p and w = p.v. With kappa = w / B the second one has
     y -> 2 v_y / kappa - 3 y, v_y -> v_y + kappa times the change of y, and likewise for z.
+
+    Parameters
+    ----------
+    order : int
+        From 0 to 3, the first that is not zero.
+
+    Raises
+    ------
+    ValueError
+        If `order` is out of range.
+
+    Examples
+    --------
+    >>> from dopplerlib.derive.snapshot import prove_twin_agrees
+    >>> prove_twin_agrees(0)
+    0
     """
     square, w, y, z, v_y, v_z = sp.symbols("B w y z v_y v_z", real=True)
     s_y, s_z = sp.symbols("s_y s_z", real=True)

@@ -108,11 +108,12 @@ def test_a_float_prints_with_all_its_digits():
         sp.Abs(sp.Symbol("w", real=True)),
         sp.pi * a,
         a + sp.I,
-        a + sp.oo,
         a ** sp.Rational(1, 3),
         a ** sp.Rational(1, 4),
         a**b,
         a ** sp.Float(2.0),
+        a + sp.Float("1e400"),
+        a + sp.Float("1e-400"),
         a + sp.Integer(2**53 + 1),
         a / sp.Integer(10**30),
         sp.Max(a, b),
@@ -122,14 +123,39 @@ def test_a_float_prints_with_all_its_digits():
 def test_an_expression_without_an_exactly_rounded_form_is_refused(expression):
     inputs = tuple(sorted(expression.free_symbols, key=str))
     for function in FUNCTIONS:
-        with pytest.raises(NotImplementedError, match="no exact"):
+        with pytest.raises(ValueError, match=r"^block must hold what has an exactly rounded form"):
             function(block(expression, inputs))
 
 
-def test_a_name_that_is_a_keyword_is_refused():
-    keyword = sp.Symbol("lambda", positive=True)
-    with pytest.raises(ValueError, match="reserved"):
-        python_function(block(2 * keyword, (keyword,)))
+@pytest.mark.parametrize(
+    ("function", "name"),
+    [
+        (python_function, "lambda"),
+        (c99_function, "double"),
+        (javascript_function, "var"),
+        *((function, name) for function in FUNCTIONS for name in ("sqrt", "x y", "", "1a", "é")),
+    ],
+)
+def test_a_name_that_the_language_cannot_take_is_refused(function, name):
+    odd = sp.Symbol(name, positive=True)
+    with pytest.raises(ValueError, match=r"^block must use names .* not reserved, got"):
+        function(block(2 * odd, (odd,)))
+    with pytest.raises(ValueError, match=r"^block must use names .* not reserved, got"):
+        function(Block(name, "A test.", (a,), (), (a,)))
+
+
+@pytest.mark.parametrize("summary", ['a "quote"', "a\nline", "a \\", None])
+def test_a_summary_that_would_end_the_docstring_is_refused(summary):
+    with pytest.raises(ValueError, match=r"^summary must be one line of text"):
+        Block("f", summary, (a,), (), (a,))
+
+
+@pytest.mark.parametrize(
+    "places", [{}, {OUT: ("lambda", 0)}, {OUT: ("a", 0)}, {OUT: ("work", -1)}, {"out_": ("w", 0)}]
+)
+def test_places_that_do_not_fit_are_refused(places):
+    with pytest.raises(ValueError, match=r"^places.* must"):
+        python_lanes(block(a), places)
 
 
 def test_lanes_are_neither_mixed_up_nor_touched():

@@ -34,4 +34,6 @@ def refused(kind, nature, optional):
         return nature in (NOT_NUMBERS | NUMBERS) - {"text", "path", "bytes"}
     if kind.startswith("callable"):
         return nature in (NOT_NUMBERS | NUMBERS) - {"callable", "object"}
+    if kind.startswith("sympy."):
+        return nature in NOT_NUMBERS | NUMBERS
     return kind[0].isupper() and nature in NOT_NUMBERS | NUMBERS

@@ -7,6 +7,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from . import changes
+from .symbolic import symbolic
 from .values import CONSTANTS, Odd
 
 
@@ -32,6 +33,8 @@ def odd_values(value):
     parts = [st.sampled_from(CONSTANTS)]
     if isinstance(value, (bool, np.bool_)):
         pass
+    elif symbolic(value):
+        parts += [st.sampled_from(symbolic(value))] * 2
     elif _numeric(value) and np.ndim(value):
         kinds = (changes.SHAPES, changes.VALUES, changes.REPRESENTATIONS)
         parts += [changes.entries(), *map(st.sampled_from, kinds)]
@@ -51,6 +54,8 @@ def odd_values(value):
         parts.append(st.sampled_from(changes.CALLABLES))
     elif isinstance(value, (list, tuple)) and len(value):
         parts += [_items(value), st.sampled_from(changes.SEQUENCES)]
+    elif isinstance(value, dict) and value:
+        parts += [_held(value)] * 2
     return st.one_of(parts)
 
 
@@ -93,6 +98,21 @@ def _items(value, most=3):
             for place, item in enumerate(value[:most])
         ]
     )
+
+
+def _held(value, most=3):
+    """Return a strategy of dicts that are `value` but for one of the first keys or its value."""
+    keys = list(value)[:most]
+    odd = [odd_values(value[key]).map(lambda odd, key=key: _entry(key, odd)) for key in keys]
+    return st.one_of(*odd, st.sampled_from(keys).map(_without))
+
+
+def _entry(key, odd):
+    return Odd(f"[{key!r}]: {odd}", lambda valid: {**valid, key: odd.make(valid[key])}, "item")
+
+
+def _without(key):
+    return Odd(f"without {key!r}", lambda v: {k: one for k, one in v.items() if k != key}, "item")
 
 
 def _item(place, odd):

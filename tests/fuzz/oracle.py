@@ -198,6 +198,8 @@ def finite(result):
         return result.dtype.kind not in "fc" or bool(np.isfinite(result).all())
     if isinstance(result, (float, complex)):
         return math.isfinite(abs(result))
+    if hasattr(result, "free_symbols"):  # an expression or a matrix of SymPy
+        return not re.search(r"\b(nan|zoo|oo)\b", str(result))
     return True
 
 
@@ -209,6 +211,8 @@ def same(a, b):
         )
     if isinstance(a, dict):
         return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, str) or hasattr(a, "free_symbols"):
+        return a == b
     if isinstance(a, (list, tuple)):
         return len(a) == len(b) and all(map(same, a, b))
     x, y = np.asarray(a), np.asarray(b)
