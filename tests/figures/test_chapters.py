@@ -4,10 +4,13 @@ import inspect
 import re
 from importlib import import_module
 from pathlib import Path
+from typing import get_args, get_origin, get_type_hints
 
 import nbformat
+import numpy as np
 import pytest
 
+from dopplerlib import _hints
 from tools.notebooks import ROOT, chapters
 
 CODE = {
@@ -55,3 +58,35 @@ def test_every_drawing_says_draw_has_hints_and_is_in_a_chapter(module):
         parameters = inspect.signature(function).parameters
         assert {*parameters, "return"} == set(function.__annotations__), name
         assert any(re.search(rf"\b{name}\(", code) for code in CODE.values()), name
+
+
+PLAIN = (1.0, 1, True, "x", None, (), {}, np.ones(1))  # one of them is right for most arguments
+WRONG = (object(), [object()], {object(): object()}, b"1")  # none of them is right for any
+
+
+def right(hint):
+    """Return what the check of a hint takes; of a record, one without fields."""
+    for value in PLAIN:
+        try:
+            _hints._check(hint)("argument", value)
+        except ValueError:
+            continue
+        return value
+    parts = get_args(hint)
+    return tuple(map(right, parts)) if parts else object.__new__(hint)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_drawing_names_the_argument_that_is_of_a_wrong_kind(module):
+    for drawing, function in drawings(module).items():
+        hints = get_type_hints(function, include_extras=True)
+        hints.pop("return")
+        valid = {name: right(hint) for name, hint in hints.items()}
+        for name, hint in hints.items():
+            wrong = list(WRONG)
+            if get_origin(hint) is dict:
+                wrong.append({right(get_args(hint)[0]): object()})
+            for value in wrong:
+                with pytest.raises(ValueError, match=rf"^{name}\b.* must ") as told:
+                    function(**valid | {name: value})
+                assert " got " in str(told.value), drawing
