@@ -1,7 +1,7 @@
 """Doppler-only radar tracking: models, filters and their evaluation.
 
 Names and packages are loaded when they are first used (PEP 562), so that importing the library
-costs nothing and asks for numba only where a filter runs.
+costs nothing and asks for numba only where compiled loops run.
 """
 
 from ._lazy import attach
