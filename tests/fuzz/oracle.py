@@ -155,8 +155,9 @@ def _components(odd):
 
 
 def _fields(call):
-    """Return the names of the fields of all records among the arguments, also in sequences."""
+    """Return the names of the fields of all records among the arguments, also in containers."""
     values = list(call.values())
+    values += [item for value in values if isinstance(value, dict) for item in value.values()]
     values += [item for value in values if isinstance(value, (list, tuple)) for item in value]
     records = [value for value in values if dataclasses.is_dataclass(value)]
     return {field.name for record in records for field in dataclasses.fields(record)}
