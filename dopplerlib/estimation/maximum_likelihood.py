@@ -118,7 +118,7 @@ def ml_initialize(
         "constant_velocity": the target moves at constant velocity. "stationary": its state is the
         same at all samples, Eq 10 as printed.
     at : {"first", "last"}
-        Sample to which `x`, `P` and `second_x` belong. Under the static likelihood they are the
+        Sample to which `x`, `P` and `second_x` belong. With "stationary" they are the
         same.
     workers : int, optional
         Threads among which the runs are shared; one for each processor if None. The result does

@@ -19,7 +19,7 @@ def test_every_part_of_the_paper_has_claims():
 
 
 def test_what_the_paper_quotes_is_what_is_judged():
-    """The numbers of claims.toml and of table2.json were typed independently."""
+    """The numbers of claims.toml and of table2.toml were typed independently."""
     quoted, published = paper.reported().quoted, {c.id: c.published for c in CLAIMS}
     assert published["nis-average"] == published["nis-average-drawn"] == quoted.nis_avg
     assert published["nis-inside"] == pytest.approx(100 * quoted.fraction_nis_inside_95)

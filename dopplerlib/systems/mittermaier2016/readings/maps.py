@@ -29,7 +29,7 @@ def _turned(values):
     """Return the map with sensors and velocity turned by a quarter: sensors along x.
 
     From +x towards -y; the other way is the same but for the sign of the velocity, to which the
-    errors of a static target are blind.
+    errors of a stationary target are blind.
     """
     return np.swapaxes(values[::-1], 0, 1)
 
