@@ -14,12 +14,8 @@ from .style import BOUND, MEASURED, ORANGE, OURS, PUBLISHED, SENSOR, TRUTH, VARI
 def geometry(target: Array, sensors: Array) -> Figure:
     """Draw two radars, a target, and what each radar measures (Fig 2.1).
 
-    Parameters
-    ----------
-    target : array_like, shape (4,)
-        State [x, y, v_x, v_y].
-    sensors : array_like, shape (2, 2)
-        Positions of the radars in m.
+    target (4,): State [x, y, v_x, v_y].
+    sensors (2, 2): Positions of the radars in m.
     """
     with styled(5.2, 4.4) as figure:
         ax = figure.subplots()
@@ -85,16 +81,10 @@ def tracks(
 ) -> Figure:
     """Draw tracks side by side, with noisy positions if there are any (Figs 5.1 and 5.3).
 
-    Parameters
-    ----------
-    truths : sequence of array_like, shape (K, 2)
-        True positions in m.
-    titles : sequence of str
-        One for each.
-    sensors : array_like, shape (2, 2)
-        Positions of the radars in m.
-    noisy : sequence of array_like, shape (K, 2)
-        Measured positions in m, one for each track or none.
+    truths (K, 2): True positions in m.
+    titles: One for each.
+    sensors (2, 2): Positions of the radars in m.
+    noisy (K, 2): Measured positions in m, one for each track or none.
     """
     with styled(7.0, 3.4) as figure:
         axes = figure.subplots(1, len(truths), squeeze=False)[0]
@@ -118,16 +108,10 @@ def noise_law(
 ) -> Figure:
     """Draw the SNR (Fig 5.2), the standard deviation and the probability of detection.
 
-    Parameters
-    ----------
-    d : array_like, shape (M,)
-        Range in m.
-    laws : dict of str to array_like, shape (M,)
-        Signal-to-noise ratios in dB by label.
-    deviation : dict of str to array_like, shape (M,)
-        Standard deviations of the range in m, by the same labels.
-    detection : dict of str to array_like, shape (M,)
-        Probabilities of detection, by the same labels.
+    d (M,): Range in m.
+    laws (M,): Signal-to-noise ratios in dB by label.
+    deviation (M,): Standard deviations of the range in m, by the same labels.
+    detection (M,): Probabilities of detection, by the same labels.
     """
     with styled(7.0, 2.9) as figure:
         left, middle, right = figure.subplots(1, 3)
@@ -156,16 +140,10 @@ def one_range(
 ) -> Figure:
     """Draw the range of one radar, measured and filtered, and a part of it (Figs 3.4 and 3.6).
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    truth, measured : array_like, shape (K,)
-        Ranges in m.
-    estimates : dict of str to array_like, shape (K,)
-        Filtered ranges by label.
-    zoom : tuple of float
-        Time interval of the right panel in s.
+    time (K,): Time in s.
+    truth, measured (K,): Ranges in m.
+    estimates (K,): Filtered ranges by label.
+    zoom: Time interval of the right panel in s.
     """
     with styled(7.0, 3.3) as figure:
         whole, part = figure.subplots(1, 2)
@@ -185,12 +163,8 @@ def one_range(
 def with_without(time: Array, errors: dict[str, dict[str, Array]]) -> Figure:
     """Draw absolute range errors of a single run, and the RMS of all runs (Fig 5.6).
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    errors : dict of str to dict of str to array_like, shape (runs, K)
-        For each panel by title, range errors in m by label.
+    time (K,): Time in s.
+    errors (runs, K): For each panel by title, range errors in m by label.
     """
     with styled(7.0, 3.3) as figure:
         axes = figure.subplots(1, len(errors), sharey=True, squeeze=False)[0]
@@ -213,14 +187,9 @@ def gates(
 ) -> Figure:
     """Draw the fixed box and the ellipse of a gate on NIS at several times (Figs 4.2 and 4.3).
 
-    Parameters
-    ----------
-    predictions : dict of str to tuple of array_like, shapes (2, 2) and (M, 2)
-        By title: the innovation covariance, and the detections relative to the prediction.
-    box : tuple of float
-        Half-widths in m and m/s.
-    factor : float
-        Bound on NIS.
+    predictions: By title: the innovation covariance, and the detections relative to the prediction.
+    box: Half-widths in m and m/s.
+    factor: Bound on NIS.
     """
     with styled(7.0, 2.9) as figure:
         axes = figure.subplots(1, len(predictions), sharex=True, sharey=True)
@@ -260,16 +229,10 @@ def radar_record(
 ) -> Figure:
     """Draw the measured and the filtered range of one radar in three scales (Figs 5.7, 5.8).
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    truth, measured, estimate : array_like, shape (K,)
-        Ranges in m.
-    updated : array_like of bool, shape (K,)
-        Whether the measurement was used.
-    zooms : sequence of two tuple (start, end)
-        Time intervals of the second and the third panel in s.
+    time (K,): Time in s.
+    truth, measured, estimate (K,): Ranges in m.
+    updated (K,): Whether the measurement was used.
+    zooms: Time intervals of the second and the third panel in s.
     """
     with styled(7.0, 2.9) as figure:
         axes = figure.subplots(1, 3)
@@ -291,14 +254,9 @@ def radar_record(
 def departures(times: Array, published: Sequence[float], titles: Sequence[str]) -> Figure:
     """Draw the times at which many runs leave the track, beside the published ones.
 
-    Parameters
-    ----------
-    times : array_like, shape (runs, 2)
-        Times of departure in s; infinite where there is none.
-    published : sequence of float
-        Published times in s.
-    titles : sequence of str
-        One for each radar.
+    times (runs, 2): Times of departure in s; infinite where there is none.
+    published: Published times in s.
+    titles: One for each radar.
     """
     with styled(7.0, 2.8) as figure:
         axes = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -324,14 +282,9 @@ def gate_on_off(
 ) -> Figure:
     """Draw filtered ranges with and without a gate, one panel for each radar (Fig 5.9).
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    truth, measured, gated, free : array_like, shape (N, K)
-        Ranges in m.
-    titles : sequence of str
-        One for each radar.
+    time (K,): Time in s.
+    truth, measured, gated, free (N, K): Ranges in m.
+    titles: One for each radar.
     """
     with styled(7.0, 3.3) as figure:
         axes = figure.subplots(1, len(truth), sharey=True)

@@ -25,24 +25,14 @@ def bound_map(
 ) -> Figure:
     """Draw the bound on a position over the plane, as ellipses, and over the baseline.
 
-    Parameters
-    ----------
-    x, y : array_like, shape (M,) and (L,)
-        Coordinates of the grid in m.
-    deviation : array_like, shape (L, M)
-        Root of the trace of the bound in m.
-    sensors : array_like, shape (2, 2)
-        Positions of the radars in m.
-    points : array_like, shape (J, 2)
-        Centers of the ellipses in m.
-    covariances : array_like, shape (J, 2, 2)
-        Bounds there.
-    scale : float
-        Half axes of an ellipse in standard deviations.
-    baselines : array_like, shape (B,)
-        Baselines in m.
-    across : dict of str to array_like, shape (B,)
-        Bounds on a standard deviation by label.
+    x, y (M,): Coordinates of the grid in m.
+    deviation (L, M): Root of the trace of the bound in m.
+    sensors (2, 2): Positions of the radars in m.
+    points (J, 2): Centers of the ellipses in m.
+    covariances (J, 2, 2): Bounds there.
+    scale: Half axes of an ellipse in standard deviations.
+    baselines (B,): Baselines in m.
+    across (B,): Bounds on a standard deviation by label.
     """
     with styled(7.0, 7.2) as figure:
         plane, below = figure.subplots(2, 1, height_ratios=(5, 3))
@@ -77,14 +67,9 @@ def consistency(
 ) -> Figure:
     """Draw averages of NIS or NEES over time beside their interval for a consistent filter.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    panels : dict of str to dict of str to array_like, shape (K,)
-        For each title, averages divided by their degrees of freedom by label.
-    interval : sequence of tuple (low, high)
-        Interval of the average for a consistent filter, for each panel.
+    time (K,): Time in s.
+    panels (K,): For each title, averages divided by their degrees of freedom by label.
+    interval: Interval of the average for a consistent filter, for each panel.
     """
     with styled(7.0, 3.1) as figure:
         axes = figure.subplots(1, len(panels), squeeze=False)[0]
@@ -102,11 +87,8 @@ def consistency(
 def reach(results: dict[str, dict[str, ConfidenceInterval]]) -> Figure:
     """Draw usable ranges with their intervals, by experiment and tracker.
 
-    Parameters
-    ----------
-    results : dict of str to dict of str to ConfidenceInterval
-        For each experiment, the usable range of each tracker in m; infinite values are drawn at
-        the edge.
+    results: For each experiment, the usable range of each tracker in m; infinite values are drawn
+        at the edge.
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
@@ -133,14 +115,9 @@ def reach(results: dict[str, dict[str, ConfidenceInterval]]) -> Figure:
 def sweep(values: Array, errors: dict[str, Sequence[ConfidenceInterval]], xlabel: str) -> Figure:
     """Draw the error of several trackers over a setting: a delay, a baseline.
 
-    Parameters
-    ----------
-    values : array_like, shape (M,)
-        Values of the setting.
-    errors : dict of str to list of ConfidenceInterval
-        Root mean square errors in m by label, one for each value.
-    xlabel : str
-        Name and unit of the setting.
+    values (M,): Values of the setting.
+    errors: Root mean square errors in m by label, one for each value.
+    xlabel: Name and unit of the setting.
     """
     with styled(6.0, 3.2) as figure:
         ax = figure.subplots()

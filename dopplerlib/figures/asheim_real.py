@@ -21,17 +21,11 @@ def records(
 ) -> Figure:
     """Draw detections, the chosen ones and the filtered range over time (Figs 6.1 to 6.4).
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time of each scan in s.
-    panels : dict of str to dict
-        For each title: `detections` (K, M), and optionally `chosen` (K,), `filtered` (K,) and
+    time (K,): Time of each scan in s.
+    panels: For each title: `detections` (K, M), and optionally `chosen` (K,), `filtered` (K,) and
         `truth` (K,); ranges in m.
-    window : tuple of float
-        Ranges between which the radar sees something, in m.
-    gap : tuple of float
-        Between these times nothing is seen, in s.
+    window: Ranges between which the radar sees something, in m.
+    gap: Between these times nothing is seen, in s.
     """
     with styled(7.0, 3.4) as figure:
         axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
@@ -59,12 +53,8 @@ def records(
 def positions(truth: Array, raw: Array, estimate: Array, sensors: Array) -> Figure:
     """Draw triangulated positions in the plane (Fig 6.4(c)).
 
-    Parameters
-    ----------
-    truth, raw, estimate : array_like, shape (K, 2)
-        Positions in m.
-    sensors : array_like, shape (2, 2)
-        Positions of the radars in m.
+    truth, raw, estimate (K, 2): Positions in m.
+    sensors (2, 2): Positions of the radars in m.
     """
     with styled(5.0, 4.6) as figure:
         ax = figure.subplots()
@@ -88,18 +78,11 @@ def coasting(
 ) -> Figure:
     """Draw the filtered ranges of many walks through the gap.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time of each scan in s.
-    truth : sequence of array_like, shape (K,)
-        True range for each panel in m.
-    runs : sequence of array_like, shape (runs, K)
-        Filtered ranges in m.
-    gap : tuple of float
-        Between these times nothing is seen, in s.
-    titles : sequence of str
-        One for each panel.
+    time (K,): Time of each scan in s.
+    truth (K,): True range for each panel in m.
+    runs (runs, K): Filtered ranges in m.
+    gap: Between these times nothing is seen, in s.
+    titles: One for each panel.
     """
     with styled(7.0, 3.2) as figure:
         axes = figure.subplots(1, len(runs), sharey=True)
@@ -125,20 +108,12 @@ def managed(
 ) -> Figure:
     """Draw confirmed tracks of one record, and a single track with probabilistic association.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time of each scan in s.
-    detections : array_like, shape (K, M)
-        Ranges in m.
-    tracks : sequence of ManagedTrack
-        As `managed_tracks` returns them.
-    truth : array_like, shape (K,)
-        True range in m.
-    gap : tuple of float
-        Between these times nothing is seen, in s.
-    alternative : array_like, shape (K,)
-        Ranges of the filter with association by probability, in m.
+    time (K,): Time of each scan in s.
+    detections (K, M): Ranges in m.
+    tracks: As `managed_tracks` returns them.
+    truth (K,): True range in m.
+    gap: Between these times nothing is seen, in s.
+    alternative (K,): Ranges of the filter with association by probability, in m.
     """
     with styled(7.0, 3.3) as figure:
         left, right = figure.subplots(1, 2, sharey=True)

@@ -19,18 +19,11 @@ def error_areas(
 ) -> Figure:
     """Draw rings around both radars and the area of their intersection (Fig 5.5).
 
-    Parameters
-    ----------
-    p : array_like, shape (2,)
-        True position in m.
-    sensors : array_like, shape (2, 2)
-        Positions of the radars in m.
-    rings : sequence of array_like, shape (2,)
-        For each pair of panels, half-widths of the rings of both radars in m.
-    areas : sequence of array_like, shape (M, 2)
-        Outline of the area for each.
-    titles : sequence of str
-        Of the panels: the first rings in whole, then each in detail.
+    p (2,): True position in m.
+    sensors (2, 2): Positions of the radars in m.
+    rings (2,): For each pair of panels, half-widths of the rings of both radars in m.
+    areas (M, 2): Outline of the area for each.
+    titles: Of the panels: the first rings in whole, then each in detail.
     """
     angle = np.linspace(0, np.pi, 2000)
     unit = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -68,18 +61,11 @@ def plane(
 ) -> Figure:
     """Draw positions in the plane, one panel for each set of labeled positions.
 
-    Parameters
-    ----------
-    truth : array_like, shape (K, 2)
-        True positions in m.
-    sets : sequence of dict of str to array_like, shape (K, 2)
-        For each panel, positions by label; the last label of a panel is the estimate.
-    sensors : array_like, shape (2, 2)
-        Positions of the radars in m.
-    limits : tuple of two tuple of float
-        Limits of x and of y.
-    titles : sequence of str
-        Of the panels.
+    truth (K, 2): True positions in m.
+    sets (K, 2): For each panel, positions by label; the last label of a panel is the estimate.
+    sensors (2, 2): Positions of the radars in m.
+    limits: Limits of x and of y.
+    titles: Of the panels.
     """
     with styled(7.0, 3.6) as figure:
         axes = figure.subplots(1, len(sets), squeeze=False, sharey=True)[0]
@@ -109,16 +95,10 @@ def triangulated(
 ) -> Figure:
     """Draw x and y over time, and the positions in the plane (Fig 5.10).
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    truth, raw, estimate : array_like, shape (K, 2)
-        Positions in m.
-    sensors : array_like, shape (2, 2)
-        Positions of the radars in m.
-    limits : tuple of two tuple of float
-        Limits of x and of y.
+    time (K,): Time in s.
+    truth, raw, estimate (K, 2): Positions in m.
+    sensors (2, 2): Positions of the radars in m.
+    limits: Limits of x and of y.
     """
     with styled(7.0, 3.0) as figure:
         axes = figure.subplots(1, 3)
@@ -145,16 +125,10 @@ def error_over_distance(
 ) -> Figure:
     """Draw the root mean square error of many runs over the distance from the origin.
 
-    Parameters
-    ----------
-    distance : array_like, shape (K,)
-        True distance in m.
-    errors : dict of str to array_like, shape (runs, K)
-        Position errors in m by label; NaN where there is no estimate.
-    limit : float
-        Error in m above which a position is called useless.
-    published : float, optional
-        Usable range in m that the thesis reports.
+    distance (K,): True distance in m.
+    errors (runs, K): Position errors in m by label; NaN where there is no estimate.
+    limit: Error in m above which a position is called useless.
+    published: Usable range in m that the thesis reports.
     """
     with styled(7.0, 3.6) as figure:
         ax = figure.subplots()

@@ -30,16 +30,10 @@ def chi_square(
 ) -> Figure:
     """Draw chi-square densities, one with its interval filled, over histograms of simulated sums.
 
-    Parameters
-    ----------
-    densities : dict of int to tuple of two ndarray, shape (M,)
-        For each number of degrees of freedom, places and density.
-    interval : tuple of float
-        What to fill.
-    sums : dict of int to ndarray, shape (R,)
-        For each number of degrees of freedom, sums of that many squares of normal numbers.
-    filled : int
-        Of which density.
+    densities (M,): For each number of degrees of freedom, places and density.
+    interval: What to fill.
+    sums (R,): For each number of degrees of freedom, sums of that many squares of normal numbers.
+    filled: Of which density.
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()
@@ -64,14 +58,9 @@ def chi_square(
 def clouds(errors: dict[str, Array], covariances: dict[str, Array], names: Sequence[str]) -> Figure:
     """Draw errors of many runs in two components, and the ellipse in which 95 % should lie.
 
-    Parameters
-    ----------
-    errors : dict of str to ndarray, shape (runs, 2)
-        Errors for each filter, in m.
-    covariances : dict of str to ndarray, shape (2, 2)
-        Covariances that each filter reports.
-    names : sequence of str
-        The two components.
+    errors (runs, 2): Errors for each filter, in m.
+    covariances (2, 2): Covariances that each filter reports.
+    names: The two components.
     """
     with styled(7.0, 3.6) as figure:
         axes = figure.subplots(1, len(errors), sharex=True, sharey=True)
@@ -98,14 +87,9 @@ def clouds(errors: dict[str, Array], covariances: dict[str, Array], names: Seque
 def one_run(time: Array, values: dict[str, Array], interval: tuple[float, ...]) -> Figure:
     """Draw statistics of a single run over time, with the interval of a single value.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s.
-    values : dict of str to ndarray, shape (K,)
-        Each statistic, by name.
-    interval : tuple of float
-        Where 95 % of the values lie.
+    time (K,): Time in s.
+    values (K,): Each statistic, by name.
+    interval: Where 95 % of the values lie.
     """
     with styled(7.0, 4.0) as figure:
         axes = figure.subplots(len(values), sharex=True, sharey=True)
@@ -124,12 +108,8 @@ def averages_spread(
 ) -> Figure:
     """Draw the distribution of time averages over consistent runs, with two intervals.
 
-    Parameters
-    ----------
-    averages : dict of str to ndarray, shape (runs,)
-        Time averages of each statistic, one for each run.
-    intervals : dict of str to dict of str to tuple of float
-        For each statistic, intervals by label.
+    averages (runs,): Time averages of each statistic, one for each run.
+    intervals: For each statistic, intervals by label.
     """
     with styled(7.0, 3.0) as figure:
         axes = figure.subplots(1, len(averages), sharex=True)
@@ -158,14 +138,9 @@ def averages_spread(
 def causes(results: dict[str, Consistency], interval: tuple[float, ...], median: float) -> Figure:
     """Draw the median NEES and NIS of several filters over time, both axes logarithmic.
 
-    Parameters
-    ----------
-    results : dict of str to Consistency
-        Runs of each filter, by label.
-    interval : tuple of float
-        Where 95 % of single values of a consistent filter lie.
-    median : float
-        Their median.
+    results: Runs of each filter, by label.
+    interval: Where 95 % of single values of a consistent filter lie.
+    median: Their median.
     """
     with styled(7.0, 5.0) as figure:
         axes = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -188,14 +163,9 @@ def causes(results: dict[str, Consistency], interval: tuple[float, ...], median:
 def claims(time: Array, spread: Array, claimed: dict[str, Array]) -> Figure:
     """Draw the actual error of the range, and the standard deviation that two filters state.
 
-    Parameters
-    ----------
-    time : ndarray, shape (M,)
-        Time since the start in s.
-    spread : ndarray, shape (M,)
-        Size of the actual error in m.
-    claimed : dict of str to ndarray, shape (M,)
-        Standard deviation of the range as each filter reports it, in m.
+    time (M,): Time since the start in s.
+    spread (M,): Size of the actual error in m.
+    claimed (M,): Standard deviation of the range as each filter reports it, in m.
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()

@@ -16,12 +16,8 @@ _DOUBLE = 2.0**-53  # relative error of one rounding
 def one_text(stages: Sequence[str], products: Sequence[str]) -> Figure:
     """Draw the path from one formula to its printed forms.
 
-    Parameters
-    ----------
-    stages : sequence of str
-        Boxes in a row, the formula first.
-    products : sequence of str
-        Boxes to which the last stage leads.
+    stages: Boxes in a row, the formula first.
+    products: Boxes to which the last stage leads.
     """
     with styled(7.0, 2.5) as figure:
         ax = figure.subplots()
@@ -55,12 +51,8 @@ def one_text(stages: Sequence[str], products: Sequence[str]) -> Figure:
 def derivative_errors(steps: Array, errors: dict[str, Array]) -> Figure:
     """Draw the relative error of numerical derivatives against the step.
 
-    Parameters
-    ----------
-    steps : ndarray, shape (M,)
-        Steps in m.
-    errors : dict of str to ndarray, shape (M,)
-        Relative error of each method. Below one rounding of a double it is drawn there.
+    steps (M,): Steps in m.
+    errors (M,): Relative error of each method. Below one rounding of a double it is drawn there.
     """
     with styled(7.0, 3.8) as figure:
         ax = figure.subplots()
@@ -89,12 +81,8 @@ def derivative_errors(steps: Array, errors: dict[str, Array]) -> Figure:
 def position_errors(time: Array, errors: dict[str, Array]) -> Figure:
     """Draw position errors of many runs: median, and the range of the central 95 % of the runs.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s.
-    errors : dict of str to ndarray, shape (runs, K)
-        Distances between estimate and truth in m, by label.
+    time (K,): Time in s.
+    errors (runs, K): Distances between estimate and truth in m, by label.
     """
     with styled(7.0, 3.6) as figure:
         ax = figure.subplots()

@@ -19,18 +19,11 @@ def bands(
 ) -> Figure:
     """Draw position and velocity on one axis: truth, estimate and two standard deviations.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s.
-    truth : ndarray, shape (K, 2)
-        True position in m and velocity in m/s.
-    x : ndarray, shape (K, 2)
-        Estimates.
-    deviation : ndarray, shape (K, 2)
-        Standard deviations of `x` as the filter reports them.
-    measured : ndarray, shape (K,), optional
-        Velocities that the measurements alone give, in m/s.
+    time (K,): Time in s.
+    truth (K, 2): True position in m and velocity in m/s.
+    x (K, 2): Estimates.
+    deviation (K, 2): Standard deviations of `x` as the filter reports them.
+    measured (K,): Velocities that the measurements alone give, in m/s.
     """
     with styled(7.0, 3.4) as figure:
         for i, ax in enumerate(figure.subplots(1, 2)):
@@ -52,16 +45,10 @@ def bands(
 def tangent(step: Array, shift: Array, line: Array, sigma_f: float) -> Figure:
     """Draw the Doppler shift along a line through the state space, and its tangent.
 
-    Parameters
-    ----------
-    step : ndarray, shape (M,)
-        Distance from the point of tangency, in standard deviations of the prior.
-    shift : ndarray, shape (M,)
-        Doppler shift in Hz.
-    line : ndarray, shape (M,)
-        The linear approximation of `shift` in Hz.
-    sigma_f : float
-        Standard deviation of a measurement in Hz.
+    step (M,): Distance from the point of tangency, in standard deviations of the prior.
+    shift (M,): Doppler shift in Hz.
+    line (M,): The linear approximation of `shift` in Hz.
+    sigma_f: Standard deviation of a measurement in Hz.
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
@@ -84,14 +71,9 @@ def tangent(step: Array, shift: Array, line: Array, sigma_f: float) -> Figure:
 def second_order(time: Array, ratios: dict[str, Array], ylabel: str) -> Figure:
     """Draw the terms that linearization neglects over time, for several filters.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s; it is drawn on a logarithmic axis.
-    ratios : dict of str to ndarray, shape (K,)
-        For each label, the neglected term as a multiple of the noise.
-    ylabel : str
-        Label of the vertical axis.
+    time (K,): Time in s; it is drawn on a logarithmic axis.
+    ratios (K,): For each label, the neglected term as a multiple of the noise.
+    ylabel: Label of the vertical axis.
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
@@ -112,16 +94,11 @@ def consistency(
 ) -> Figure:
     """Draw average NEES and NIS of many runs, for several targets side by side.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s.
-    averages : list of dict of str to tuple of two ndarray, shape (K,)
-        For each target, what each filter reached: averages of NEES and of NIS over the runs.
-    intervals : tuple of two pairs of float
-        Where the averages of a consistent filter lie, for NEES and for NIS.
-    titles : sequence of str
-        Names of the targets.
+    time (K,): Time in s.
+    averages (K,): For each target, what each filter reached: averages of NEES and of NIS over the
+        runs.
+    intervals: Where the averages of a consistent filter lie, for NEES and for NIS.
+    titles: Names of the targets.
     """
     with styled(7.0, 4.6) as figure:
         axes = figure.subplots(2, len(averages), sharex=True, sharey="row", squeeze=False)
@@ -144,14 +121,9 @@ def consistency(
 def gap(time: Array, deviations: dict[str, Array], gaps: Sequence[tuple[float, float]]) -> Figure:
     """Draw standard deviations over time for several records, and where sensors are missing.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s.
-    deviations : dict of str to ndarray, shape (K, 6)
-        For each label, the standard deviations of the state.
-    gaps : sequence of tuple (float, float)
-        When sensors were missing, in s.
+    time (K,): Time in s.
+    deviations (K, 6): For each label, the standard deviations of the state.
+    gaps: When sensors were missing, in s.
     """
     with styled(7.0, 3.4) as figure:
         axes = figure.subplots(1, 2)
@@ -169,13 +141,10 @@ def gap(time: Array, deviations: dict[str, Array], gaps: Sequence[tuple[float, f
 def covariance_health(step: Array, results: dict[str, dict[str, Array]]) -> Figure:
     """Draw asymmetry and smallest eigenvalue of a computed covariance over a long run.
 
-    Parameters
-    ----------
-    step : ndarray, shape (M,)
-        Array of the steps at which the matrices were looked at.
-    results : dict of str to dict of str to ndarray, shape (up to M, 6, 6)
-        For each title of a column and each label, covariances scaled to a unit diagonal. A series
-        that is shorter than the others of its column ended because a variance became negative.
+    step (M,): Array of the steps at which the matrices were looked at.
+    results (up to M, 6, 6): For each title of a column and each label, covariances scaled to a unit
+        diagonal. A series that is shorter than the others of its column ended because a variance
+        became negative.
     """
     with styled(7.0, 4.8) as figure:
         axes = figure.subplots(2, len(results), sharex="col", sharey="row", squeeze=False)

@@ -14,12 +14,8 @@ from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, styled
 def when(delay: float, window: float) -> Figure:
     """Draw the time to which a window of samples belongs, and the delay since.
 
-    Parameters
-    ----------
-    delay : float
-        Group delay of the low-pass in s.
-    window : float
-        Length of the window in s.
+    delay: Group delay of the low-pass in s.
+    window: Length of the window in s.
     """
     with styled(7.0, 2.6) as figure:
         ax = figure.subplots()
@@ -57,13 +53,9 @@ def budget(
 ) -> Figure:
     """Draw position errors of many settings, one row each.
 
-    Parameters
-    ----------
-    rows : sequence of tuple (str, list of ConfidenceInterval, list of float)
-        Name, the median with its interval in m for each moment, and the quantile of 90 % there. An
-        empty name leaves a gap.
-    moments : sequence of float
-        The moments in s.
+    rows: Name, the median with its interval in m for each moment, and the quantile of 90 % there.
+        An empty name leaves a gap.
+    moments: The moments in s.
     """
     with styled(7.0, 0.5 + 0.27 * len(rows)) as figure:
         axes = figure.subplots(1, len(moments), sharey=True, sharex=True)
@@ -95,14 +87,9 @@ def wrong_time(
 ) -> Figure:
     """Draw averages of NIS and of NEES over time, with their intervals, for right and wrong times.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s.
-    nis, nees : sequence of list of ConfidenceInterval
-        Averages over runs, one list of K for each label.
-    labels : sequence of str
-        What the times are.
+    time (K,): Time in s.
+    nis, nees: Averages over runs, one list of K for each label.
+    labels: What the times are.
     """
     styles = ((OURS, "-", 3.2), (ORANGE, "--", 1.5), (PINK, ":", 1.8))
     with styled(7.0, 3.2) as figure:
@@ -133,16 +120,10 @@ def starts(
 ) -> Figure:
     """Draw errors after starts of different length, and the fraction that fails.
 
-    Parameters
-    ----------
-    lengths : sequence of float
-        Time until the start in s.
-    errors : dict of str to list of ndarray, shape (runs,)
-        Position errors in m, for each length.
-    shares : dict of str to list of ConfidenceInterval
-        Shares of runs whose error is above `limit`.
-    limit : float
-        In m.
+    lengths: Time until the start in s.
+    errors (runs,): Position errors in m, for each length.
+    shares: Shares of runs whose error is above `limit`.
+    limit: In m.
     """
     with styled(7.0, 3.3) as figure:
         left, right = figure.subplots(1, 2)
@@ -180,14 +161,9 @@ def achievable(
 ) -> Figure:
     """Draw position errors over the strength of the echo.
 
-    Parameters
-    ----------
-    levels : sequence of float
-        Power of the echo over the noise in 1 Hz, in dB.
-    medians : sequence of ConfidenceInterval
-        Median errors in m with their intervals, for each level.
-    bounds : dict of str to sequence of float
-        Medians in m that each bound would allow, for each level; two bounds at most.
+    levels: Power of the echo over the noise in 1 Hz, in dB.
+    medians: Median errors in m with their intervals, for each level.
+    bounds: Medians in m that each bound would allow, for each level; two bounds at most.
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()

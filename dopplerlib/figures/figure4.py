@@ -14,12 +14,8 @@ _PARTS = (("position", "m"), ("velocity", "m/s"))
 def errors_by_noise(ours: NoiseSweep, published: PublishedFigure4 | None = None) -> Figure:
     """Draw mean errors against the variance of the noise, as in Fig 4 but on two log axes.
 
-    Parameters
-    ----------
-    ours : NoiseSweep
-        Drawn as a band from the least to the largest sequence, and their mean.
-    published : PublishedFigure4, optional
-        Drawn as dots.
+    ours: Drawn as a band from the least to the largest sequence, and their mean.
+    published: Drawn as dots.
     """
     with styled(7, 3.3) as figure:
         for ax, (part, unit) in zip(figure.subplots(1, 2), _PARTS, strict=True):
@@ -45,14 +41,9 @@ def mean_and_median(
 ) -> Figure:
     """Draw errors divided by the standard deviation of the noise: flat where the problem is linear.
 
-    Parameters
-    ----------
-    results : dict of str to pair of ndarray, shape (L, D)
-        Position errors in m by label: the mean and the median over the grid.
-    bound : ndarray, shape (L,)
-        Mean position error at the bound, in m.
-    variance : ndarray, shape (L,)
-        Of the noise, in Hz^2.
+    results (L, D): Position errors in m by label: the mean and the median over the grid.
+    bound (L,): Mean position error at the bound, in m.
+    variance (L,): Of the noise, in Hz^2.
     """
     sigma_f = np.sqrt(variance)
     with styled(7, 3.2) as figure:
@@ -73,11 +64,8 @@ def mean_and_median(
 def sequences(sets: dict[str, tuple[Array, Array]]) -> Figure:
     """Draw the mean error of each sequence over the levels, position against velocity.
 
-    Parameters
-    ----------
-    sets : dict of str to pair of ndarray, shape (D,)
-        By label: position errors in m/Hz and velocity errors in (m/s)/Hz, both divided by the
-        deviation of the noise and averaged over levels. The first is the published one.
+    sets (D,): By label: position errors in m/Hz and velocity errors in (m/s)/Hz, both divided by
+        the deviation of the noise and averaged over levels. The first is the published one.
     """
     looks = ((PUBLISHED, "o"), (OURS, "^"), (ORANGE, "s"), (PINK, "x"), (BOUND, "+"))
     with styled(7, 3.6) as figure:

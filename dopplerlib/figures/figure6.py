@@ -17,16 +17,10 @@ def scene(
 ) -> Figure:
     """Draw the paper's 3-D scene: sensors, true path, estimates of one run, published estimates.
 
-    Parameters
-    ----------
-    result : ExampleRuns
-        Our runs.
-    published : PublishedFigure6
-        The digitized figure.
-    array : RadarArray
-        The sensors.
-    run : int
-        Which run to draw.
+    result: Our runs.
+    published: The digitized figure.
+    array: The sensors.
+    run: Which run to draw.
     """
     with styled(7.0, 4.6) as figure:
         ax = figure.add_subplot(projection="3d", computed_zorder=False)
@@ -51,14 +45,9 @@ def scene(
 def errors(result: ExampleRuns, published: PublishedFigure6, run: int = 0) -> Figure:
     """Draw the absolute position errors of one run, and the published ones, axis by axis.
 
-    Parameters
-    ----------
-    result : ExampleRuns
-        Our runs.
-    published : PublishedFigure6
-        The digitized figure.
-    run : int
-        Which run to draw.
+    result: Our runs.
+    published: The digitized figure.
+    run: Which run to draw.
     """
     with styled(7.0, 5.2) as figure:
         axes = figure.subplots(3, sharex=True, sharey=True)
@@ -75,12 +64,8 @@ def errors(result: ExampleRuns, published: PublishedFigure6, run: int = 0) -> Fi
 def error_bands(result: ExampleRuns, published: PublishedFigure6) -> Figure:
     """Draw percentile bands of the absolute errors over all runs, and the published curves.
 
-    Parameters
-    ----------
-    result : ExampleRuns
-        Our runs.
-    published : PublishedFigure6
-        The digitized figure.
+    result: Our runs.
+    published: The digitized figure.
     """
     runs = len(result.error)
     with styled(7.0, 6.4) as figure:
@@ -111,16 +96,10 @@ def nis(
 ) -> Figure:
     """Draw NIS of one run above the published NIS, with the samples that were not used.
 
-    Parameters
-    ----------
-    result : ExampleRuns
-        Our runs.
-    published : PublishedFigure6
-        The digitized figure.
-    interval : tuple of float
-        Bounds of NIS for a consistent filter.
-    run : int
-        Which run to draw.
+    result: Our runs.
+    published: The digitized figure.
+    interval: Bounds of NIS for a consistent filter.
+    run: Which run to draw.
     """
     ours = result.track.nis[run], ~result.track.updated[run], "ours, one run", OURS
     theirs = published.nis, published.skipped, "published", PUBLISHED
@@ -148,14 +127,9 @@ def nis_averages(
 ) -> Figure:
     """Draw the distribution over runs of the time average of NIS, for several filters.
 
-    Parameters
-    ----------
-    results : dict of str to ExampleRuns
-        Runs of each filter, by label.
-    published_average : dict of str to float
-        Published averages, by label.
-    interval : tuple of float
-        In which the average of a consistent filter lies.
+    results: Runs of each filter, by label.
+    published_average: Published averages, by label.
+    interval: In which the average of a consistent filter lies.
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()
@@ -178,12 +152,8 @@ def nis_averages(
 def skipped_counts(result: ExampleRuns, published: PublishedFigure6) -> Figure:
     """Draw the number of samples that each run did not use: too good against too bad.
 
-    Parameters
-    ----------
-    result : ExampleRuns
-        Runs with the two-sided gate.
-    published : PublishedFigure6
-        The digitized figure.
+    result: Runs with the two-sided gate.
+    published: The digitized figure.
     """
 
     def counts(values, skipped):

@@ -35,14 +35,9 @@ _TEMPLATE = files(__package__) / "demonstration.html"
 def doppler_curves(time: Array, shifts: Array, names: Sequence[str] | None = None) -> Figure:
     """Draw the Doppler shift at each sensor over time.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Times in s.
-    shifts : ndarray, shape (K, N)
-        Doppler shifts in Hz.
-    names : sequence of str, optional
-        Labels of the sensors; their numbers, from 1, if None.
+    time (K,): Times in s.
+    shifts (K, N): Doppler shifts in Hz.
+    names: Labels of the sensors; their numbers, from 1, if None.
     """
     with styled(7, 3.6) as figure:
         ax = figure.subplots()
@@ -56,12 +51,8 @@ def doppler_curves(time: Array, shifts: Array, names: Sequence[str] | None = Non
 def two_sensors(array: RadarArray, x: ArrayLike) -> Figure:
     """Draw the top view of a moving platform, and of the same scene from the platform.
 
-    Parameters
-    ----------
-    array : RadarArray
-        Two sensors or more in the plane z = 0.
-    x : array_like, shape (6,)
-        State of the target relative to the platform in m and m/s, in the plane z = 0.
+    array: Two sensors or more in the plane z = 0.
+    x (6,): State of the target relative to the platform in m and m/s, in the plane z = 0.
     """
     x = np.asarray(x, float)
     p, v, sensors = x[:2], x[3:5], array.positions[:, :2]
@@ -102,14 +93,9 @@ def iso_doppler_lines(
 ) -> Figure:
     """Draw the iso-Doppler lines of one sensor, and the lines of all sensors through a target.
 
-    Parameters
-    ----------
-    array : RadarArray
-        Sensors in the plane z = 0.
-    x : array_like, shape (6,)
-        State of the target in m and m/s, in the plane z = 0.
-    extent : tuple
-        Left, right, lower and upper edge of what is shown, in m.
+    array: Sensors in the plane z = 0.
+    x (6,): State of the target in m and m/s, in the plane z = 0.
+    extent: Left, right, lower and upper edge of what is shown, in m.
     """
     x = np.asarray(x, float)
     left, right, lower, upper = extent
@@ -161,14 +147,9 @@ def iso_doppler_cones(
 ) -> Figure:
     """Draw the iso-Doppler cones of all sensors in space, and their cut at the target's range.
 
-    Parameters
-    ----------
-    array : RadarArray
-        Sensors near the plane x = 0.
-    x : array_like, shape (6,)
-        State of the target in m and m/s.
-    azimuth, elevation : float
-        From where the cones are seen, in degrees; see `project`.
+    array: Sensors near the plane x = 0.
+    x (6,): State of the target in m and m/s.
+    azimuth, elevation: From where the cones are seen, in degrees; see `project`.
     """
     x = np.asarray(x, float)
     around = np.linspace(0, 2 * np.pi, 181)
@@ -218,14 +199,9 @@ def _cut(array, x, around):
 def sensitivities(time: Array, jacobian: Array, sigma_f: float) -> Figure:
     """Draw the sensitivity of a snapshot to each coordinate, the others known.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Times in s.
-    jacobian : ndarray, shape (K, N, 6)
-        Derivatives of the Doppler shifts, in Hz per m and Hz per m/s.
-    sigma_f : float
-        Standard deviation of a Doppler measurement in Hz.
+    time (K,): Times in s.
+    jacobian (K, N, 6): Derivatives of the Doppler shifts, in Hz per m and Hz per m/s.
+    sigma_f: Standard deviation of a Doppler measurement in Hz.
     """
     per_cm = np.sqrt((jacobian**2).sum(axis=-2)) / 100
     styles = ("-", "--", ":")
@@ -254,14 +230,9 @@ def sensitivities(time: Array, jacobian: Array, sigma_f: float) -> Figure:
 def demonstration(javascript: str, array: RadarArray, x: ArrayLike) -> str:
     """Draw a plane scene with sliders, its Doppler shifts and iso-Doppler lines, as HTML.
 
-    Parameters
-    ----------
-    javascript : str
-        Source of the function ``doppler_shift``, as `dopplerlib.derive.printers` prints it.
-    array : RadarArray
-        Sensors in the plane z = 0.
-    x : array_like, shape (6,)
-        State with which the scene starts, in m and m/s, in the plane z = 0.
+    javascript: Source of the function ``doppler_shift``, as `dopplerlib.derive.printers` prints it.
+    array: Sensors in the plane z = 0.
+    x (6,): State with which the scene starts, in m and m/s, in the plane z = 0.
 
     Returns
     -------

@@ -34,18 +34,11 @@ def hero(
 ) -> Figure:
     """Draw one record of Doppler shifts, the tracks of many, and their errors.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        Ring of sensors, true path and its sampling.
-    z : ndarray, shape (K, N)
-        Doppler measurements of one run in Hz.
-    tracks : ndarray, shape (runs, K, 6)
-        Estimated states of many runs in m and m/s.
-    start : ndarray, shape (6,)
-        State with which every run starts.
-    azimuth, elevation : float
-        From where the scene is seen, in degrees; see `project`.
+    scenario: Ring of sensors, true path and its sampling.
+    z (K, N): Doppler measurements of one run in Hz.
+    tracks (runs, K, 6): Estimated states of many runs in m and m/s.
+    start (6,): State with which every run starts.
+    azimuth, elevation: From where the scene is seen, in degrees; see `project`.
     """
     with styled(7, 6.4) as figure:
         grid = figure.add_gridspec(2, 2, height_ratios=(1.45, 1))

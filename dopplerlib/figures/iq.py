@@ -28,14 +28,9 @@ _STYLES = (
 def chain(stages: Sequence[str], rates: Sequence[str], per_sensor: int) -> Figure:
     """Draw the signal chain as boxes, with the rate between them.
 
-    Parameters
-    ----------
-    stages : sequence of str
-        Names of the boxes.
-    rates : sequence of str
-        What each box gives; the last one is the result.
-    per_sensor : int
-        How many of the boxes exist once for every sensor.
+    stages: Names of the boxes.
+    rates: What each box gives; the last one is the result.
+    per_sensor: How many of the boxes exist once for every sensor.
     """
     with styled(7.0, 2.3) as figure:
         ax = figure.subplots()
@@ -81,14 +76,9 @@ def chain(stages: Sequence[str], rates: Sequence[str], per_sensor: int) -> Figur
 def circle(time: Array, x: ComplexArray, turn: int) -> Figure:
     """Draw IQ samples as they run around a circle, and both parts over time.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        Time in s.
-    x : ndarray of complex, shape (n,)
-        IQ samples.
-    turn : int
-        How many samples are drawn in the plane, about one turn.
+    time (n,): Time in s.
+    x (n,): IQ samples.
+    turn: How many samples are drawn in the plane, about one turn.
     """
     with styled(7.0, 3.0) as figure:
         plane, trace = figure.subplots(1, 2, width_ratios=(1, 1.5))
@@ -127,16 +117,10 @@ def peak(
 ) -> Figure:
     """Draw a spectrum, and its peak with the parabola through three bins.
 
-    Parameters
-    ----------
-    f, power : ndarray, shape (M,)
-        Frequencies in Hz and magnitudes of a finely padded transform.
-    bins, bin_power : ndarray, shape (n,)
-        The same of the unpadded one.
-    vertex : float
-        Frequency of the parabola's top in Hz.
-    truth : float
-        True frequency in Hz.
+    f, power (M,): Frequencies in Hz and magnitudes of a finely padded transform.
+    bins, bin_power (n,): The same of the unpadded one.
+    vertex: Frequency of the parabola's top in Hz.
+    truth: True frequency in Hz.
     """
     with styled(7.0, 3.1) as figure:
         wide, near = figure.subplots(1, 2)
@@ -163,14 +147,9 @@ def peak(
 def impairments(f: Array, spectra: dict[str, Array], truth: float) -> Figure:
     """Draw spectra of the same record with faults of the receiver and without.
 
-    Parameters
-    ----------
-    f : ndarray, shape (M,)
-        Frequencies in Hz.
-    spectra : dict of str to ndarray, shape (M,)
-        Powers by label, relative to the echo.
-    truth : float
-        True frequency in Hz.
+    f (M,): Frequencies in Hz.
+    spectra (M,): Powers by label, relative to the echo.
+    truth: True frequency in Hz.
     """
     styles = ((PUBLISHED, "-"), (ORANGE, "--"), (OURS, "-"))
     with styled(7.0, 3.3) as figure:
@@ -192,14 +171,10 @@ def impairments(f: Array, spectra: dict[str, Array], truth: float) -> Figure:
 def tags(time: Array, shift: Array, windows: Array, center: Array, end: Array) -> Figure:
     """Draw a changing Doppler shift, and estimates tagged with the center and end of windows.
 
-    Parameters
-    ----------
-    time, shift : ndarray, shape (M,)
-        Time in s and true shift in Hz.
-    windows : ndarray, shape (K, 2)
-        Start and end of each window in s.
-    center, end : ndarray, shape (K,)
-        Errors in Hz if an estimate is read as the shift at the center, and at the end.
+    time, shift (M,): Time in s and true shift in Hz.
+    windows (K, 2): Start and end of each window in s.
+    center, end (K,): Errors in Hz if an estimate is read as the shift at the center, and at the
+        end.
     """
     with styled(7.0, 3.1) as figure:
         left, right = figure.subplots(1, 2)
@@ -224,12 +199,8 @@ def tags(time: Array, shift: Array, windows: Array, center: Array, end: Array) -
 def outliers(estimates: dict[str, Array], truth: float) -> Figure:
     """Draw histograms of estimates, on a logarithmic axis, for several signal-to-noise ratios.
 
-    Parameters
-    ----------
-    estimates : dict of str to ndarray, shape (runs,)
-        Frequencies in Hz, by label.
-    truth : float
-        True frequency in Hz.
+    estimates (runs,): Frequencies in Hz, by label.
+    truth: True frequency in Hz.
     """
     with styled(7.0, 2.8) as figure:
         axes = figure.subplots(1, len(estimates), sharex=True, sharey=True)
@@ -249,16 +220,10 @@ def threshold(
 ) -> Figure:
     """Draw errors and outliers against the signal-to-noise ratio, with bound and law.
 
-    Parameters
-    ----------
-    benchmark : FrequencyBenchmark
-        From `saved_benchmark`.
-    names : sequence of str
-        Estimators that are drawn.
-    predicted : ndarray, shape (L,)
-        Root-mean-square error in Hz that bound and outliers give together.
-    law : ndarray, shape (L,)
-        Predicted fraction of outliers.
+    benchmark: From `saved_benchmark`.
+    names: Estimators that are drawn.
+    predicted (L,): Root-mean-square error in Hz that bound and outliers give together.
+    law (L,): Predicted fraction of outliers.
     """
     with styled(7.0, 6.2) as figure:
         top, low = figure.subplots(2, 1, sharex=True, height_ratios=(1.5, 1))
@@ -287,12 +252,8 @@ def threshold(
 def bias(fraction: Array, biases: dict[str, Array]) -> Figure:
     """Draw the bias of estimators over where the tone lies between two bins.
 
-    Parameters
-    ----------
-    fraction : ndarray, shape (M,)
-        Distance from the nearest bin, in bins.
-    biases : dict of str to ndarray, shape (M,)
-        Absolute errors without noise, in bins, by label.
+    fraction (M,): Distance from the nearest bin, in bins.
+    biases (M,): Absolute errors without noise, in bins, by label.
     """
     with styled(7.0, 3.4) as figure:
         ax = figure.subplots()
@@ -316,16 +277,10 @@ def best_window(
 ) -> Figure:
     """Draw errors against the length of the window, measured and predicted, for both tags.
 
-    Parameters
-    ----------
-    T : ndarray, shape (M,)
-        Lengths in s.
-    errors : dict of str to list of ConfidenceInterval, length M
-        Measured root-mean-square errors in Hz, by tag.
-    laws : dict of str to tuple (ndarray, shape (L,), ndarray, shape (L,), float)
-        For each tag lengths in s, predicted errors in Hz, and the best length in s.
-    limit : float
-        Standard deviation in Hz that is wanted.
+    T (M,): Lengths in s.
+    errors (M,): Measured root-mean-square errors in Hz, by tag.
+    laws (L,): For each tag lengths in s, predicted errors in Hz, and the best length in s.
+    limit: Standard deviation in Hz that is wanted.
     """
     with styled(7.0, 3.6) as figure:
         ax = figure.subplots()
@@ -351,14 +306,9 @@ def best_window(
 def overlap(tau: Array, law: Array, lag: Array, measured: Sequence[ConfidenceInterval]) -> Figure:
     """Draw the correlation of the errors of overlapping windows.
 
-    Parameters
-    ----------
-    tau, law : ndarray, shape (M,)
-        Distance of the windows over their length, and the closed form.
-    lag : ndarray, shape (L,)
-        Distances at which it was measured.
-    measured : list of ConfidenceInterval, length L
-        The results.
+    tau, law (M,): Distance of the windows over their length, and the closed form.
+    lag (L,): Distances at which it was measured.
+    measured (L,): The results.
     """
     with styled(7.0, 3.0) as figure:
         ax = figure.subplots()
@@ -381,14 +331,9 @@ def colored(
 ) -> Figure:
     """Draw the autocorrelation of innovations, and mean NIS and NEES.
 
-    Parameters
-    ----------
-    lag : ndarray, shape (L,)
-        Lags in steps.
-    autocorrelation : dict of str to list of ConfidenceInterval, length L
-        Of the innovations, by label.
-    belief : dict of str to tuple (ConfidenceInterval, ConfidenceInterval)
-        For the same labels, mean NIS and mean NEES.
+    lag (L,): Lags in steps.
+    autocorrelation (L,): Of the innovations, by label.
+    belief: For the same labels, mean NIS and mean NEES.
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))

@@ -43,16 +43,10 @@ def sketches() -> Figure:
 def pulses(distance: Array, signal: Array, v: Array, doppler: dict[str, Array]) -> Figure:
     """Draw the echoes of one pulse, and the Doppler spectrum of the samples at each echo.
 
-    Parameters
-    ----------
-    distance : array_like, shape (samples,)
-        Range in m.
-    signal : ndarray of complex, shape (samples,)
-        Echoes of one pulse.
-    v : array_like, shape (pulses,)
-        Range rates in m/s, in rising order.
-    doppler : dict of str to array_like, shape (pulses,)
-        For each label the power in dB.
+    distance (samples,): Range in m.
+    signal (samples,): Echoes of one pulse.
+    v (pulses,): Range rates in m/s, in rising order.
+    doppler (pulses,): For each label the power in dB.
     """
     with styled(7.0, 2.8) as figure:
         left, right = figure.subplots(1, 2)
@@ -73,13 +67,9 @@ def ghosts(
 ) -> Figure:
     """Draw the lines of the chirps' beat frequencies in the plane of range and range rate.
 
-    Parameters
-    ----------
-    cases : dict of str to tuple (relations, frequencies, found, targets)
-        For each title: rows of `chirp_relation`, tones of each chirp in Hz, and (pairs, 2) found
+    cases: For each title: rows of `chirp_relation`, tones of each chirp in Hz, and (pairs, 2) found
         and (targets, 2) true ranges in m and range rates in m/s.
-    reach : tuple of float
-        Limits of the range axis in m.
+    reach: Limits of the range axis in m.
     """
     with styled(7.0, 4.0) as figure:
         axes = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
@@ -104,12 +94,8 @@ def ghosts(
 def solved(cases: dict[str, Array], targets: dict[str, Array]) -> Figure:
     """Draw solutions of the MFSK system for many records, beside the targets.
 
-    Parameters
-    ----------
-    cases : dict of str to array_like, shape (..., 2)
-        Ranges in m and range rates in m/s for each title.
-    targets : dict of str to array_like, shape (targets, 2)
-        The true ones.
+    cases (..., 2): Ranges in m and range rates in m/s for each title.
+    targets (targets, 2): The true ones.
     """
     with styled(7.0, 3.0) as figure:
         axes = figure.subplots(1, len(cases), squeeze=False)[0]
@@ -129,12 +115,9 @@ def maps(
 ) -> Figure:
     """Draw range-Doppler maps.
 
-    Parameters
-    ----------
-    cases : dict of str to tuple (r, v, power, labels)
-        For each title what `range_doppler_map` returns, and {text: (r, v)} to be written into it.
-    floor : float
-        Lowest power of the colors in dB.
+    cases: For each title what `range_doppler_map` returns, and {text: (r, v)} to be written into
+        it.
+    floor: Lowest power of the colors in dB.
     """
     with styled(7.0, 3.6) as figure:
         axes = figure.subplots(1, len(cases), squeeze=False)[0]
@@ -161,10 +144,7 @@ def maps(
 def scheme(blocks: Sequence[tuple[str, str]]) -> Figure:
     """Draw a processing scheme as boxes in a row, with the output of each.
 
-    Parameters
-    ----------
-    blocks : sequence of tuple (name, output)
-        From the first to the last; an empty name gives the input.
+    blocks: From the first to the last; an empty name gives the input.
     """
     with styled(7.0, 2.6) as figure:
         ax = figure.subplots()
@@ -192,13 +172,9 @@ def scheme(blocks: Sequence[tuple[str, str]]) -> Figure:
 def scene(stages: dict[str, dict[str, Array]], truth: Array) -> Figure:
     """Draw detections and tracks from above, one panel for each stage.
 
-    Parameters
-    ----------
-    stages : dict of str to dict of str to array_like, shape (..., 2)
-        For each title and each label, positions [x, y] in m. Labels that begin with "track" are
-        drawn as lines, and named once.
-    truth : array_like, shape (K, 4)
-        True states of the target.
+    stages (..., 2): For each title and each label, positions [x, y] in m. Labels that begin with
+        "track" are drawn as lines, and named once.
+    truth (K, 4): True states of the target.
     """
     dots = {"target": OURS, "stands still": BOUND, "false alarm": ORANGE, "object": SENSOR}
     with styled(7.0, 3.8) as figure:

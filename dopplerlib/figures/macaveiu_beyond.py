@@ -21,16 +21,10 @@ def side_by_side(
 ) -> Figure:
     """Draw the path and the speed along x as estimated by several filters.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    truth : array_like, shape (K, 4)
-        True states.
-    tracks : dict of str to array_like, shape (runs, K, 4)
-        Estimates of each filter; some runs are drawn.
-    limits : tuple of float, optional
-        Limits of the y axis of the path in m.
+    time (K,): Time in s.
+    truth (K, 4): True states.
+    tracks (runs, K, 4): Estimates of each filter; some runs are drawn.
+    limits: Limits of the y axis of the path in m.
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
@@ -55,16 +49,10 @@ def hole(
 ) -> Figure:
     """Draw the range rates that a clutter rule tests, and the errors during the gap that it leaves.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    rates : dict of str to array_like, shape (K,)
-        Range rate of each path in m/s.
-    v_min : float
-        Range rate below which a detection is deleted, in m/s.
-    deviations : dict of str to array_like, shape (K,)
-        For each way to use the rule, the root mean square position error in m.
+    time (K,): Time in s.
+    rates (K,): Range rate of each path in m/s.
+    v_min: Range rate below which a detection is deleted, in m/s.
+    deviations (K,): For each way to use the rule, the root mean square position error in m.
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)
@@ -91,18 +79,11 @@ def over_time(
 ) -> Figure:
     """Draw the root mean square error of several estimators over time.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    errors : dict of str to array_like, shape (K,)
-        Error of each estimator.
-    shaded : array_like of bool, shape (K,)
-        When the target turns.
-    ylabel : str
-        Name and unit of the error.
-    mode : array_like, shape (K,), optional
-        Probability of the agile model, drawn below.
+    time (K,): Time in s.
+    errors (K,): Error of each estimator.
+    shaded (K,): When the target turns.
+    ylabel: Name and unit of the error.
+    mode (K,): Probability of the agile model, drawn below.
     """
     rows = 1 if mode is None else 2
     ratios = [1] if mode is None else [3, 1]
@@ -131,16 +112,10 @@ def crossings(
 ) -> Figure:
     """Draw two crossing targets, and the fraction of runs with swapped or merged tracks.
 
-    Parameters
-    ----------
-    truth : array_like, shape (2, K, 4)
-        True states.
-    estimates : array_like, shape (2, K, 4)
-        Estimates of one run.
-    shares : dict of str to list of ConfidenceInterval
-        For each label, the fraction of the runs at each angle.
-    angles : sequence of float
-        In degrees.
+    truth (2, K, 4): True states.
+    estimates (2, K, 4): Estimates of one run.
+    shares: For each label, the fraction of the runs at each angle.
+    angles: In degrees.
     """
     with styled(7.0, 3.2) as figure:
         left, right = figure.subplots(1, 2)

@@ -23,14 +23,9 @@ _SETTINGS = {
 def three_panels(time: Array, runs: VehicleRuns, run: int = 0) -> Figure:
     """Draw position and both speeds as in Figs 7 to 11: measurements, truth, estimate.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    runs : VehicleRuns
-        From `track`; one of the runs is drawn, and the range of all for the speeds.
-    run : int
-        Which run.
+    time (K,): Time in s.
+    runs: From `track`; one of the runs is drawn, and the range of all for the speeds.
+    run: Which run.
     """
     truth, z, x = runs.path.truth, runs.z[run], runs.x[run]
     with styled(7.0, 2.7) as figure:
@@ -66,16 +61,10 @@ def claim_map(
 ) -> Figure:
     """Draw the percentage of runs in which each claim holds, over two settings.
 
-    Parameters
-    ----------
-    rows, columns : tuple (str, sequence of float)
-        Name and values of a setting, as `regions.claim_map` takes them.
-    shares : dict of str to array_like, shape (3, rows, columns)
-        Fraction of the runs for each claim, and the ends of its interval.
-    settings : AutomotiveSettings
-        Our choice, to be marked.
-        A line surrounds the places in which a claim holds for sure; where the runs are too few to
-        tell, the place is hatched.
+    rows, columns: Name and values of a setting, as `regions.claim_map` takes them.
+    shares (3, rows, columns): Fraction of the runs for each claim, and the ends of its interval.
+    settings: Our choice, to be marked. A line surrounds the places in which a claim holds for sure;
+        where the runs are too few to tell, the place is hatched.
     """
     (row, heights), (column, widths) = rows, columns
     x, y = widths.index(getattr(settings, column)), heights.index(getattr(settings, row))
@@ -125,16 +114,10 @@ def lags(
 ) -> Figure:
     """Draw lag and residual noise over the velocity step of the filter.
 
-    Parameters
-    ----------
-    w : array_like, shape (M,)
-        Velocity steps of the filter in m/s.
-    predicted : array_like, shape (M, 2)
-        Predicted lag of position in m and speed in m/s.
-    noise : array_like, shape (M, 2)
-        Predicted deviation by noise.
-    measured : dict of float to tuple of two ConfidenceInterval
-        For some w, the mean error of position and speed in many runs.
+    w (M,): Velocity steps of the filter in m/s.
+    predicted (M, 2): Predicted lag of position in m and speed in m/s.
+    noise (M, 2): Predicted deviation by noise.
+    measured: For some w, the mean error of position and speed in many runs.
     """
     with styled(7.0, 3.2) as figure:
         for i, ax in enumerate(figure.subplots(1, 2)):
@@ -164,14 +147,9 @@ def nis_and_nees(
 ) -> Figure:
     """Draw the average NIS and NEES of several paths.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Time in s.
-    averages : dict of str to tuple of two ndarray, shape (K,)
-        For each path, averages over the runs of NIS and NEES.
-    intervals : tuple of two pairs of float
-        Intervals of both averages for a consistent filter.
+    time (K,): Time in s.
+    averages (K,): For each path, averages over the runs of NIS and NEES.
+    intervals: Intervals of both averages for a consistent filter.
     """
     with styled(7.0, 3.2) as figure:
         axes = figure.subplots(1, 2, sharey=True)

@@ -27,18 +27,13 @@ def likelihood_ridges(
 ) -> Figure:
     """Draw contours of the likelihood over distance and speed, one panel for each record.
 
-    Parameters
-    ----------
-    position : ndarray, shape (A,)
-        Distances in m.
-    speed : ndarray, shape (B,)
-        Speeds in m/s.
-    misfits : dict of str to ndarray, shape (B, A)
-        Chi-square without noise, by label: twice what the log-likelihood loses against the truth.
-    truth : tuple of float
-        True distance and speed.
-    bounds : dict of str to ndarray, shape (2, 2), optional
-        Covariances of distance and speed of some of the records, drawn as two-sigma ellipses.
+    position (A,): Distances in m.
+    speed (B,): Speeds in m/s.
+    misfits (B, A): Chi-square without noise, by label: twice what the log-likelihood loses against
+        the truth.
+    truth: True distance and speed.
+    bounds (2, 2): Covariances of distance and speed of some of the records, drawn as two-sigma
+        ellipses.
     """
     with styled(7, 2.9) as figure:
         axes = figure.subplots(1, len(misfits), sharex=True, sharey=True)
@@ -68,16 +63,10 @@ def blind_family(
 ) -> Figure:
     """Draw the states that a ring cannot tell apart, in space and by their coordinates.
 
-    Parameters
-    ----------
-    array : RadarArray
-        The ring.
-    x : ndarray, shape (6,)
-        The true state.
-    family : ndarray, shape (M, 6)
-        States with the same Doppler shifts, in order.
-    azimuth, elevation : float
-        From where they are seen, in degrees; see `project`.
+    array: The ring.
+    x (6,): The true state.
+    family (M, 6): States with the same Doppler shifts, in order.
+    azimuth, elevation: From where they are seen, in degrees; see `project`.
     """
 
     def view(points):
@@ -115,14 +104,9 @@ def bounds_by_change(
 ) -> Figure:
     """Draw the bound against the size of a change of the array.
 
-    Parameters
-    ----------
-    change : ndarray, shape (M,)
-        Sizes of the change in m.
-    bounds : dict of str to ndarray, shape (M,)
-        Bounds on the position error in m, by kind of change.
-    plain : dict of str to float, optional
-        Bounds in m for the array as it is, by label.
+    change (M,): Sizes of the change in m.
+    bounds (M,): Bounds on the position error in m, by kind of change.
+    plain: Bounds in m for the array as it is, by label.
     """
     with styled(7, 3.4) as figure:
         ax = figure.subplots()
@@ -148,19 +132,12 @@ def estimates(
 ) -> Figure:
     """Draw estimates beside the truth and the states that could be mistaken for it.
 
-    Parameters
-    ----------
-    sets : dict of str to ndarray, shape (runs, 6)
-        Estimates, one panel for each.
-    x : ndarray, shape (6,)
-        The true state.
-    others : dict of str to ndarray, shape (M, 6)
-        States that look alike, by label: several as a curve, one as a cross.
-    bounds : dict of str to ndarray, shape (6, 6)
-        Covariances by the labels of `sets`, drawn as ellipses about the truth: two standard
-        deviations in every direction.
-    axes : sequence of tuple of int
-        The two coordinates that each panel shows, out of 0, 1, 2.
+    sets (runs, 6): Estimates, one panel for each.
+    x (6,): The true state.
+    others (M, 6): States that look alike, by label: several as a curve, one as a cross.
+    bounds (6, 6): Covariances by the labels of `sets`, drawn as ellipses about the truth: two
+        standard deviations in every direction.
+    axes: The two coordinates that each panel shows, out of 0, 1, 2.
     """
     with styled(7, 3.5) as figure:
         panels = figure.subplots(1, len(sets))
@@ -191,16 +168,10 @@ def estimates(
 def bound_maps(x: Array, y: Array, maps: dict[str, Array], arrays: Sequence[RadarArray]) -> Figure:
     """Draw maps of the bound on the position error over the plane z = 0.
 
-    Parameters
-    ----------
-    x : ndarray, shape (A,)
-        Distances before the array in m.
-    y : ndarray, shape (B,)
-        Positions to the side in m.
-    maps : dict of str to ndarray, shape (A, B)
-        Bounds in m, one panel for each.
-    arrays : sequence of RadarArray
-        Sensors of each map, shown in the plane.
+    x (A,): Distances before the array in m.
+    y (B,): Positions to the side in m.
+    maps (A, B): Bounds in m, one panel for each.
+    arrays: Sensors of each map, shown in the plane.
     """
     levels = np.geomspace(1e-3, 10, 9)
     with styled(7, 3.6) as figure:
@@ -232,16 +203,10 @@ def bounds_over_time(
 ) -> Figure:
     """Draw the bound on the position error against the length of the record.
 
-    Parameters
-    ----------
-    time : ndarray, shape (M,)
-        Lengths of the record in s.
-    bounds : dict of str to ndarray, shape (M,)
-        Bounds in m, by label.
-    law : ndarray, shape (M,)
-        The power law of short records in m.
-    marks : dict of str to tuple of float, optional
-        Points (length in s, error in m), by label.
+    time (M,): Lengths of the record in s.
+    bounds (M,): Bounds in m, by label.
+    law (M,): The power law of short records in m.
+    marks: Points (length in s, error in m), by label.
     """
     with styled(7, 3.8) as figure:
         ax = figure.subplots()

@@ -15,14 +15,9 @@ from .style import BOUND, OURS, PUBLISHED, TRUTH, VARIANTS, styled
 def symptoms(result: PostMortem, told: Published, run: int = 0) -> Figure:
     """Draw distance, speed and position error of many runs beside the reported end values.
 
-    Parameters
-    ----------
-    result : PostMortem
-        Runs of the report's system.
-    told : Published
-        Results of the report.
-    run : int
-        Which run to draw on its own.
+    result: Runs of the report's system.
+    told: Results of the report.
+    run: Which run to draw on its own.
     """
     x = result.track.x
     panels = (
@@ -60,13 +55,9 @@ def repair_ranges(
 ) -> Figure:
     """Draw median and central 95 % of the runs for each quantity and repair.
 
-    Parameters
-    ----------
-    rows : dict of str to dict of str to array_like, shape (runs,)
-        For each variant, by its name, the same quantities by theirs.
-    reported : dict of str to tuple (str, float)
-        Value of the report or of a consistent filter, by the name of the quantity: a pair of label
-        and number.
+    rows (runs,): For each variant, by its name, the same quantities by theirs.
+    reported: Value of the report or of a consistent filter, by the name of the quantity: a pair of
+        label and number.
     """
     names = list(next(iter(rows.values())))
     place = -np.arange(len(rows))
@@ -95,12 +86,8 @@ def repair_ranges(
 def alarm_shares(looks: Sequence[int], cases: dict[str, dict[str, Booleans]]) -> Figure:
     """Draw the fraction of runs in which each test has raised an alarm, over the samples.
 
-    Parameters
-    ----------
-    looks : sequence of int
-        Numbers of samples after which the tests were taken.
-    cases : dict of str to dict of str to ndarray of bool, shape (runs, looks)
-        For each filter, by its name, what `innovation_alarms` returned.
+    looks: Numbers of samples after which the tests were taken.
+    cases (runs, looks): For each filter, by its name, what `innovation_alarms` returned.
     """
     with styled(7.0, 2.9) as figure:
         axes = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]

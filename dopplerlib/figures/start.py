@@ -22,15 +22,10 @@ def reduced_cost(
 ) -> Figure:
     """Draw maps of the misfit that the best velocity leaves at every position.
 
-    Parameters
-    ----------
-    panels : dict of str to tuple of ndarray
-        By title: places along the horizontal axis (A,) and the vertical one (B,) in m, and the
+    panels: By title: places along the horizontal axis (A,) and the vertical one (B,) in m, and the
         chi-square (B, A).
-    marks : sequence of dict of str to array_like, shape (2,)
-        Points (horizontal, vertical) of each panel, by label.
-    labels : sequence of tuple of str
-        What the axes of each panel are.
+    marks (2,): Points (horizontal, vertical) of each panel, by label.
+    labels: What the axes of each panel are.
     """
     styles = (("s", TRUTH), ("X", OURS))
     colors = BoundaryNorm(_LEVELS, 256)
@@ -64,14 +59,9 @@ def error_distributions(
 ) -> Figure:
     """Draw the distributions of the errors of starts, for position and velocity.
 
-    Parameters
-    ----------
-    errors : dict of str to tuple of ndarray, shape (runs,)
-        Errors of position in m and of velocity in m/s, by label.
-    marks : dict of str to tuple of float
-        The same two errors of single published starts.
-    bounds : tuple of float
-        Root mean square bounds of both.
+    errors (runs,): Errors of position in m and of velocity in m/s, by label.
+    marks: The same two errors of single published starts.
+    bounds: Root mean square bounds of both.
     """
     with styled(7, 3.9) as figure:
         axes = figure.subplots(1, 2, sharey=True)
@@ -100,16 +90,10 @@ def errors_by_samples(
 ) -> Figure:
     """Draw the position errors of starts against the length of the record.
 
-    Parameters
-    ----------
-    samples : sequence of int, length M
-        Lengths of the records.
-    errors : sequence of ndarray, shape (runs,)
-        Position errors in m for each length.
-    bound : ndarray, shape (M,)
-        Root mean square bounds in m.
-    printed : tuple of float
-        Number of samples and error of the published start.
+    samples (M,): Lengths of the records.
+    errors (runs,): Position errors in m for each length.
+    bound (M,): Root mean square bounds in m.
+    printed: Number of samples and error of the published start.
     """
     low, first, middle, third, high = np.transpose(
         [np.percentile(error, [5, 25, 50, 75, 95]) for error in errors]
@@ -140,20 +124,12 @@ def error_maps(
 ) -> Figure:
     """Draw maps of position errors over the plane, x upwards as in the paper.
 
-    Parameters
-    ----------
-    x, y : ndarray, shape (A,)
-        Places in m.
-    maps : dict of str to ndarray, shape (A, A)
-        Errors in m, one panel for each; NaN stays white.
-    arrays : sequence of RadarArray
-        Sensors of each map.
-    velocities : sequence of array_like, shape (3,)
-        Velocity of the target in each map in m/s, drawn as an arrow in a corner.
-    columns : int
-        Panels side by side.
-    limits : tuple of float
-        Ends of the color scale in m.
+    x, y (A,): Places in m.
+    maps (A, A): Errors in m, one panel for each; NaN stays white.
+    arrays: Sensors of each map.
+    velocities (3,): Velocity of the target in each map in m/s, drawn as an arrow in a corner.
+    columns: Panels side by side.
+    limits: Ends of the color scale in m.
     """
     rows = -(-len(maps) // columns)
     with styled(7, 0.9 + 2.35 * rows * 3 / columns) as figure:
@@ -197,13 +173,10 @@ def error_maps(
 def area_fractions(limits: Array, panels: dict[str, dict[str, Array]]) -> Figure:
     """Draw the fraction of the area above an error, ours as bands of draws, and published.
 
-    Parameters
-    ----------
-    limits : ndarray, shape (L,)
-        Errors in m.
-    panels : dict of str to dict of str to ndarray, shape (L,) or (L, draws)
-        Fractions by title of the panel and label of the curve. What has draws is ours and is drawn
-        with the range of the central 95 % of them; what has none is published.
+    limits (L,): Errors in m.
+    panels (L,) or (L, draws): Fractions by title of the panel and label of the curve. What has
+        draws is ours and is drawn with the range of the central 95 % of them; what has none is
+        published.
     """
     with styled(7, 3.4) as figure:
         axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
@@ -236,17 +209,11 @@ def area_fractions(limits: Array, panels: dict[str, dict[str, Array]]) -> Figure
 def line_profiles(axis: Array, profiles: dict[str, Array], bound: Array, lowest: float) -> Figure:
     """Draw errors along two lines through the middle of a map.
 
-    Parameters
-    ----------
-    axis : ndarray, shape (A,)
-        Places along the line in m.
-    profiles : dict of str to ndarray, shape (A,)
-        Published errors in m by label, the first along the sensors as drawn, the second across;
-        NaN where the error is below the lowest contour or hidden.
-    bound : ndarray, shape (A,)
-        Bound across the sensors in m: what they see well.
-    lowest : float
-        Lowest contour in m.
+    axis (A,): Places along the line in m.
+    profiles (A,): Published errors in m by label, the first along the sensors as drawn, the second
+        across; NaN where the error is below the lowest contour or hidden.
+    bound (A,): Bound across the sensors in m: what they see well.
+    lowest: Lowest contour in m.
     """
     with styled(7, 3.2) as figure:
         ax = figure.subplots()

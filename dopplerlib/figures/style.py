@@ -43,10 +43,7 @@ def styled(width=7.0, height=4.0):
 def plain_log_ticks(axis):
     """Label 1, 2 and 5 times the powers of ten of a logarithmic axis with plain numbers.
 
-    Parameters
-    ----------
-    axis : matplotlib.axis.Axis
-        Axis with a logarithmic scale that spans about a decade, where powers of ten alone are too
+    axis: Axis with a logarithmic scale that spans about a decade, where powers of ten alone are too
         few.
     """
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
@@ -62,12 +59,8 @@ def sensor_colors(n):
 def project(points, azimuth, elevation):
     """Return the orthographic view of `points`, shape (..., 3), as (..., 2): right and up.
 
-    Parameters
-    ----------
-    points : array_like, shape (..., 3)
-        Positions in m, z upwards.
-    azimuth, elevation : float
-        From where they are seen, in degrees; azimuth from +x towards +y.
+    points (..., 3): Positions in m, z upwards.
+    azimuth, elevation: From where they are seen, in degrees; azimuth from +x towards +y.
     """
     a, e = np.deg2rad([azimuth, elevation])
     right = [-np.sin(a), np.cos(a), 0]

@@ -11,14 +11,9 @@ from .style import OURS, TRUTH, sensor_colors, spread, styled
 def record(time: Array, z: Array, shift: Array) -> Figure:
     """Draw one record of Doppler measurements and the true shifts behind it.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s.
-    z : ndarray, shape (K, N)
-        Measurements in Hz.
-    shift : ndarray, shape (K, N)
-        True Doppler shifts in Hz.
+    time (K,): Time in s.
+    z (K, N): Measurements in Hz.
+    shift (K, N): True Doppler shifts in Hz.
     """
     with styled(7.0, 3.8) as figure:
         ax, zoom = figure.subplots(1, 2, width_ratios=(3, 2))
@@ -40,16 +35,10 @@ def record(time: Array, z: Array, shift: Array) -> Figure:
 def approach(time: Array, truth: Array, x: Array, run: int = 0) -> Figure:
     """Draw the estimated distance of one run, and the predicted time of impact of all runs.
 
-    Parameters
-    ----------
-    time : ndarray, shape (K,)
-        Time in s.
-    truth : ndarray, shape (K, 6)
-        True states.
-    x : ndarray, shape (runs, K, 6)
-        Estimated states.
-    run : int
-        Which run to draw.
+    time (K,): Time in s.
+    truth (K, 6): True states.
+    x (runs, K, 6): Estimated states.
+    run: Which run to draw.
     """
     impact = time - x[..., 0] / x[..., 3]
     true_impact = time[0] - truth[0, 0] / truth[0, 3]

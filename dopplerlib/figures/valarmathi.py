@@ -27,10 +27,7 @@ _FRAME = dict(frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
 def paths(several: Sequence[VelocityPath]) -> Figure:
     """Draw velocity over time for several paths.
 
-    Parameters
-    ----------
-    several : sequence of VelocityPath
-        To draw, each with its name.
+    several: To draw, each with its name.
     """
     with styled(7.0, 2.8) as figure:
         ax = figure.subplots()
@@ -45,12 +42,8 @@ def paths(several: Sequence[VelocityPath]) -> Figure:
 def window_error(table: WindowTable, snr_db: float) -> Figure:
     """Draw the cumulative error over the window, a line for each acceleration: Fig 3.
 
-    Parameters
-    ----------
-    table : WindowTable
-        Of a simulation.
-    snr_db : float
-        One of its signal-to-noise ratios.
+    table: Of a simulation.
+    snr_db: One of its signal-to-noise ratios.
     """
     j = int(np.flatnonzero(table.snrs_db == snr_db)[0])
     shades = np.linspace(0.75, 0.0, len(table.accelerations))
@@ -77,14 +70,9 @@ def velocities(
 ) -> Figure:
     """Draw velocities of sensor 1, sensor 2 and both, fixed window: Figs 7 to 9 and 11 to 13.
 
-    Parameters
-    ----------
-    results : sequence of AlgorithmRuns
-        A row for each.
-    run : int
-        Which run to draw.
-    numbers : sequence of sequence of int
-        For each result, the numbers of the three figures of the document.
+    results: A row for each.
+    run: Which run to draw.
+    numbers: For each result, the numbers of the three figures of the document.
     """
     with styled(7.0, 2.5 * len(results) + 0.5) as figure:
         rows = figure.subplots(len(results), 3, sharex=True, sharey="row", squeeze=False)
@@ -127,16 +115,10 @@ def cumulative_errors(
 ) -> Figure:
     """Draw the running error of some algorithms, mean over the runs: Figs 10, 14, 15 and 16.
 
-    Parameters
-    ----------
-    results : sequence of AlgorithmRuns
-        A panel for each.
-    lines : sequence of sequence of tuple (int, int)
-        For each panel, which algorithms, and the filter of which sensor.
-    titles : sequence of str
-        Of the panels; the names of the paths if empty.
-    ncols : int
-        Panels side by side.
+    results: A panel for each.
+    lines: For each panel, which algorithms, and the filter of which sensor.
+    titles: Of the panels; the names of the paths if empty.
+    ncols: Panels side by side.
     """
     nrows = -(-len(results) // ncols)
     with styled(7.0, 2.5 * nrows + 0.5) as figure:
@@ -164,15 +146,10 @@ def cumulative_errors(
 def sweep(study: FusionStudy, failed: float, limits: Sequence[float]) -> Figure:
     """Draw RMS errors over the SNR: in the maneuvers, and at constant velocity.
 
-    Parameters
-    ----------
-    study : Study
-        Drawn are the medians over the runs with their 95 % intervals: of each path in the
+    study: Drawn are the medians over the runs with their 95 % intervals: of each path in the
         maneuver, and of its second one at constant velocity.
-    failed : float
-        Error in m/s from which a run has failed.
-    limits : sequence of float
-        Signal-to-noise ratios in dB at which the document sees its limits.
+    failed: Error in m/s from which a run has failed.
+    limits: Signal-to-noise ratios in dB at which the document sees its limits.
     """
     panels = [(path, "maneuver", f"{path}, in the maneuver") for path in study.paths]
     panels.append((study.paths[1], "constant", f"{study.paths[1]}, constant velocity"))
@@ -207,12 +184,8 @@ def failures(
 ) -> Figure:
     """Draw the percentage of failed runs over the SNR, for each path.
 
-    Parameters
-    ----------
-    shares : dict of (str, int) to tuple of (ndarray, sequence of ConfidenceInterval)
-        By path and algorithm, as `failed_shares` returns it.
-    failed_share : float
-        Fraction of failed runs from which an algorithm has failed.
+    shares: By path and algorithm, as `failed_shares` returns it.
+    failed_share: Fraction of failed runs from which an algorithm has failed.
     """
     paths_ = list(dict.fromkeys(path for path, _ in shares))
     with styled(7.0, 3.1) as figure:
@@ -238,10 +211,7 @@ def failures(
 def correlation(measured: Array, law: Array) -> Figure:
     """Draw the autocorrelation of measurement errors beside its closed form.
 
-    Parameters
-    ----------
-    measured, law : array_like, shape (lags + 1,)
-        From lag 0 on, in samples.
+    measured, law (lags + 1,): From lag 0 on, in samples.
     """
     with styled(7.0, 2.8) as figure:
         ax = figure.subplots()
