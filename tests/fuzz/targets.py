@@ -1,8 +1,8 @@
 """Public functions, constructors, methods and properties of the library, and valid calls of them.
 
 Nothing is listed by hand. What is public follows from names; what an argument is follows from its
-entry in the docstring; a valid call is one that the Examples in docstrings make. So a new function
-is tested from its first day, and one that no example calls is found.
+entry in the docstring or from its hint; a valid call is one that the Examples in docstrings make.
+So a new function is tested from its first day, and one that no example calls is found.
 """
 
 import contextlib
@@ -13,10 +13,14 @@ import functools
 import inspect
 import pkgutil
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import valid_files
 
@@ -93,12 +97,38 @@ def sections(value):
 
 
 def kinds(value):
-    """Return {argument: type} from the docstring; ``F, Q : type`` counts as two."""
+    """Return {argument: type} from the docstring (``F, Q : type`` counts as two) or the hints."""
     doc = sections(value)
     text = doc.get("Parameters", "") + "\n" + doc.get("Attributes", "")
-    return {
+    found = {
         name.lstrip("*"): kind for names, kind in ENTRY.findall(text) for name in names.split(", ")
     }
+    if found or UNCHECKED.search(inspect.getdoc(value) or ""):
+        return found
+    hints = get_type_hints(inspect.unwrap(value))
+    return {name: _documented(hint) for name, hint in hints.items() if name != "return"}
+
+
+def _documented(hint):
+    """Return how a docstring would name the type that a hint stands for."""
+    kind, parts = get_origin(hint) or hint, get_args(hint)
+    if kind in (Union, UnionType):
+        if np.ndarray in parts or {*get_args(ArrayLike)} <= {*parts}:
+            return "array_like or others"
+        named = " or ".join(_documented(part) for part in parts if part is not NoneType)
+        return named + ", optional" * (NoneType in parts)
+    if kind is Literal:
+        return "{...}"
+    if kind is np.ndarray:
+        text = str(hint)
+        return "array_like" + " of bool" * ("bool" in text) + " of complex" * ("complex" in text)
+    if kind is np.random.Generator:
+        return "numpy.random.Generator"
+    if kind is Callable:
+        return "callable"
+    name = getattr(kind, "__name__", str(kind))
+    # What a name in capitals refuses, any iterable may be.
+    return name.lower() if kind is Any or kind.__module__ == "collections.abc" else name
 
 
 def members(cls):

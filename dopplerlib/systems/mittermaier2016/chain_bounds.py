@@ -27,34 +27,19 @@ def position_bound(
 ) -> FloatArray:
     """Return the Cramér-Rao bound on the position at a time, from windows side by side.
 
-    Parameters
-    ----------
-    time : float
-        In s; the windows end there at the latest.
-    window : float
-        Length of a window in s.
-    cn0 : float
-        Power of an echo over the noise power in 1 Hz, in Hz.
-    first : float
-        When the first window begins, in s.
-    samples_per_second : float
-        Sampling rate in Hz, of little influence.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Covariance of the position in m^2 at the bound, for the target of Table 2 and constant
-        velocity; infinite entries on the diagonal where the windows are too few.
+    time: In s; the windows end there at the latest.
+    window: Length of a window in s.
+    cn0: Power of an echo over the noise power in 1 Hz, in Hz.
+    first: When the first window begins, in s.
+    samples_per_second: Sampling rate in Hz, of little influence.
+    Returns (3, 3): Covariance of the position in m^2 at the bound, for the target of Table 2 and
+        constant velocity; infinite entries on the diagonal where the windows are too few.
 
     See Also
     --------
     position_bound_iq : the bound of the samples, which know more than their windows.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of its range (times 0 to 1.1 s, windows 1e-6 to 1 s, echoes 1e-9 to
-        1e15 Hz, rates 1 to 1e7 Hz), or no window fits.
+    Raises ValueError if a number is out of its range (times 0 to 1.1 s, windows 1e-6 to 1 s, echoes
+        1e-9 to 1e15 Hz, rates 1 to 1e7 Hz), or no window fits.
 
     Notes
     -----
@@ -85,27 +70,14 @@ def position_bound_iq(
 ) -> FloatArray:
     """Return the Cramér-Rao bound on the position at a time, from the IQ samples up to it.
 
-    Parameters
-    ----------
-    time : float
-        In s; the samples end there.
-    cn0 : float
-        Power of an echo over the noise power in 1 Hz, in Hz.
-    first : float
-        When the samples begin, in s.
-    samples_per_second : float
-        Sampling rate in Hz, of little influence.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Covariance of the position in m^2 at the bound, for the target of Table 2 and constant
-        velocity. Amplitude and phase of each sensor's echo are unknown.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of its range, see `position_bound`, or there are less than three samples.
+    time: In s; the samples end there.
+    cn0: Power of an echo over the noise power in 1 Hz, in Hz.
+    first: When the samples begin, in s.
+    samples_per_second: Sampling rate in Hz, of little influence.
+    Returns (3, 3): Covariance of the position in m^2 at the bound, for the target of Table 2 and
+        constant velocity. Amplitude and phase of each sensor's echo are unknown.
+    Raises ValueError if a number is out of its range, see `position_bound`, or there are less than
+        three samples.
 
     Notes
     -----
@@ -140,23 +112,11 @@ def position_bound_iq(
 def record_length(error: Positive, cn0: Echo) -> float:
     """Return the length of record at which the bound on the position falls to an error.
 
-    Parameters
-    ----------
-    error : float
-        Wanted root mean square of the position error at the end of the record, in m.
-    cn0 : float
-        Power of an echo over the noise power in 1 Hz, in Hz.
-
-    Returns
-    -------
-    float
-        Length in s at which `position_bound_iq` comes down to `error`, for a record that begins
-        with the track of Table 2; infinite if the whole track does not do it.
-
-    Raises
-    ------
-    ValueError
-        If a number is not positive.
+    error: Wanted root mean square of the position error at the end of the record, in m.
+    cn0: Power of an echo over the noise power in 1 Hz, in Hz.
+    Returns: Length in s at which `position_bound_iq` comes down to `error`, for a record that
+        begins with the track of Table 2; infinite if the whole track does not do it.
+    Raises ValueError if a number is not positive.
 
     Examples
     --------
@@ -186,24 +146,11 @@ def median_error(
 ) -> float:
     """Return the median length of a normal error.
 
-    Parameters
-    ----------
-    P : array_like, shape (3, 3)
-        Covariance of the error in m^2.
-    rng : numpy.random.Generator
-        Source of randomness.
-    draws : int
-        How many errors are drawn.
-
-    Returns
-    -------
-    float
-        In m, good to about a percent with 20 000 draws.
-
-    Raises
-    ------
-    ValueError
-        If `P` is no covariance, `draws` is not positive, or `rng` is not a generator.
+    P (3, 3): Covariance of the error in m^2.
+    rng: Source of randomness.
+    draws: How many errors are drawn.
+    Returns: In m, good to about a percent with 20 000 draws.
+    Raises ValueError if `P` is no covariance, `draws` is not positive, or `rng` is not a generator.
 
     Examples
     --------

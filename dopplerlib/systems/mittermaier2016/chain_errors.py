@@ -18,17 +18,11 @@ from .published import reported
 class TrackErrors:
     """Errors and consistency of tracks of the target of Table 2.
 
-    Attributes
-    ----------
-    error : ndarray, shape (M, runs)
-        Distance in m between estimated and true position, at M times.
-    nees : ndarray, shape (M, runs)
-        Normalized estimation error squared of the state there.
-    nis : ndarray, shape (runs,)
-        Normalized innovation squared of the hypothesis that counts in the end, averaged over the
-        samples of the filter.
-    lag1_autocorrelation : ndarray, shape (runs,)
-        Autocorrelation of the innovations, see `IqTrack`.
+    error (M, runs): Distance in m between estimated and true position, at M times.
+    nees (M, runs): Normalized estimation error squared of the state there.
+    nis (runs,): Normalized innovation squared of the hypothesis that counts in the end, averaged
+        over the samples of the filter.
+    lag1_autocorrelation (runs,): Autocorrelation of the innovations, see `IqTrack`.
     """
 
     error: Annotated[FloatArray, exactly(None, None)]
@@ -44,23 +38,10 @@ def track_errors(
 ) -> TrackErrors:
     """Compare tracks with the truth of Table 2.
 
-    Parameters
-    ----------
-    found : IqTrack
-        Tracks of the target of Table 2.
-    times : iterable of float
-        When to compare, in s on the clock: with the true state *at* that time.
-    carry : bool
-        See `IqTrack.at`.
-
-    Returns
-    -------
-    TrackErrors
-
-    Raises
-    ------
-    ValueError
-        If there is no time, or one is before the start is known.
+    found: Tracks of the target of Table 2.
+    times: When to compare, in s on the clock: with the true state *at* that time.
+    carry: See `IqTrack.at`.
+    Raises ValueError if there is no time, or one is before the start is known.
 
     Examples
     --------

@@ -31,38 +31,18 @@ def track_iq(
 ) -> IqTrack:
     """Find and track the target of Table 2 from IQ samples.
 
-    Parameters
-    ----------
-    iq : Baseband
-        Samples of the paper's array.
-    window, start : float
-        See `dopplerlib.chain.track.track_iq`.
-    timestamp : {"center", "end"}
-        To which moment of its window a Doppler shift is taken to belong.
-    subtract_delay : bool
-        Whether the group delay of the low-pass is taken off the times.
-    sigma_a : float, optional
-        Standard deviation of the acceleration in m/s^2, for one millisecond; that of the scenario
-        if None. For another hop it is scaled, so that the velocity wanders as far in a second.
-    search : {"quarters", "room"}
-        Where hypotheses about the start come from: from each quarter of the room, by the signs of
-        y and z, or from the whole.
-    **settings
-        Others of `dopplerlib.chain.track.track_iq`.
-
-    Returns
-    -------
-    IqTrack
-
-    Raises
-    ------
-    ValueError
-        If an argument is refused by `dopplerlib.chain.track.track_iq`.
-
-    Warns
-    -----
-    ImplausibleStart
-        See `dopplerlib.chain.track.track_iq`.
+    iq: Samples of the paper's array.
+    window, start: See `dopplerlib.chain.track.track_iq`.
+    timestamp: To which moment of its window a Doppler shift is taken to belong.
+    subtract_delay: Whether the group delay of the low-pass is taken off the times.
+    sigma_a: Standard deviation of the acceleration in m/s^2, for one millisecond; that of the
+        scenario if None. For another hop it is scaled, so that the velocity wanders as far in a
+        second.
+    search: Where hypotheses about the start come from: from each quarter of the room, by the signs
+        of y and z, or from the whole.
+    **settings: Others of `dopplerlib.chain.track.track_iq`.
+    Raises ValueError if an argument is refused by `dopplerlib.chain.track.track_iq`.
+    Warns ImplausibleStart: See `dopplerlib.chain.track.track_iq`.
 
     Notes
     -----

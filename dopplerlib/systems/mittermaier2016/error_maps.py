@@ -25,12 +25,9 @@ _IN_PLANE = np.array([True, True, False, True, True, False])
 class ErrorMap:
     """Errors of maximum-likelihood starts all over the plane of Fig 3.
 
-    Attributes
-    ----------
-    position : ndarray, shape (39, 39, draws)
-        Distance in m between estimate and truth, by x and y of the true place; NaN on a sensor.
-    velocity : ndarray, shape (39, 39, draws)
-        The same of the velocity in m/s.
+    position (39, 39, draws): Distance in m between estimate and truth, by x and y of the true
+        place; NaN on a sensor.
+    velocity (39, 39, draws): The same of the velocity in m/s.
     """
 
     position: Annotated[FloatArray, exactly(None, None, None, check=_checks.measured)]
@@ -61,31 +58,15 @@ def error_map(
 ) -> ErrorMap:
     """Estimate the state of a target at every place of Fig 3.
 
-    Parameters
-    ----------
-    draws : int
-        How often each place gets new noise.
-    rng : numpy.random.Generator
-        Source of the noise; every draw has a child of its own.
-    samples : int
-        Number of Doppler samples of the moving target.
-    likelihood : {"stationary", "constant_velocity"}
-        What the estimator assumes, see `ml_initialize`; without effect for one sample.
-    room : float
-        Half the side in m of the square that is searched. Not stated in the paper.
-    velocity : array_like, shape (3,), optional
-        Velocity of the target in m/s, in the plane; that of the paper if None.
-
-    Returns
-    -------
-    ErrorMap
-        Sensors and velocity are as the paper prints them: a line along y.
-
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong shape, is not finite and positive where it has to be, or is
-        refused by `ml_initialize`.
+    draws: How often each place gets new noise.
+    rng: Source of the noise; every draw has a child of its own.
+    samples: Number of Doppler samples of the moving target.
+    likelihood: What the estimator assumes, see `ml_initialize`; without effect for one sample.
+    room: Half the side in m of the square that is searched. Not stated in the paper.
+    velocity (3,): Velocity of the target in m/s, in the plane; that of the paper if None.
+    Returns: Sensors and velocity are as the paper prints them: a line along y.
+    Raises ValueError if an argument has the wrong shape, is not finite and positive where it has to
+        be, or is refused by `ml_initialize`.
 
     Notes
     -----
@@ -133,16 +114,9 @@ def error_map_bound(
 ) -> FloatArray:
     """Return the least root mean square position error at every place of Fig 3.
 
-    Parameters
-    ----------
-    samples, likelihood, velocity
-        See `figure3`.
-
-    Returns
-    -------
-    ndarray, shape (39, 39)
-        Cramér-Rao bound in m by x and y; infinite where the information is singular, NaN on a
-        sensor.
+    samples, likelihood, velocity: See `figure3`.
+    Returns (39, 39): Cramér-Rao bound in m by x and y; infinite where the information is singular,
+        NaN on a sensor.
 
     Examples
     --------
@@ -169,24 +143,13 @@ def fraction_above(
 ) -> FloatArray:
     """Return the fraction of places at which an error is above a limit.
 
-    Parameters
-    ----------
-    error : ndarray, shape (A, B, ...)
-        Errors by place.
-    limits : sequence of float, length L
-        In the unit of the errors.
-    where : ndarray of bool, shape (A, B)
-        Places that count. They stand for squares of one size: it is a fraction of the area.
-
-    Returns
-    -------
-    ndarray, shape (L, ...)
-        A place without a number is not above anything: an error that is only known to be small.
-
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, or no place or no limit is left.
+    error (A, B, ...): Errors by place.
+    limits (L,): In the unit of the errors.
+    where (A, B): Places that count. They stand for squares of one size: it is a fraction of the
+        area.
+    Returns (L, ...): A place without a number is not above anything: an error that is only known to
+        be small.
+    Raises ValueError if a shape does not fit, or no place or no limit is left.
 
     Examples
     --------
@@ -202,18 +165,10 @@ def fraction_above(
 def comparable(published: PublishedFigure3, panel: Annotated[int, up_to(1, least=0)]) -> BoolArray:
     """Return the places of Fig 3 at which errors can be compared in every orientation.
 
-    Parameters
-    ----------
-    published : PublishedFigure3
-        The digitized figure.
-    panel : int
-        0 for the left map, 1 for the right one.
-
-    Returns
-    -------
-    ndarray of bool, shape (39, 39)
-        Where the published error is known, or known to be small, and no sensor is: neither along
-        y, as printed, nor along x.
+    published: The digitized figure.
+    panel: 0 for the left map, 1 for the right one.
+    Returns (39, 39): Where the published error is known, or known to be small, and no sensor is:
+        neither along y, as printed, nor along x.
 
     Examples
     --------

@@ -20,16 +20,10 @@ from .published import reported
 class ExampleRuns:
     """Our runs of the simulation example.
 
-    Attributes
-    ----------
-    time : ndarray, shape (K,)
-        Time of each sample in s.
-    truth : ndarray, shape (K, 6)
-        True states.
-    track : Track
-        Estimates, leading axis ``runs``.
-    error : ndarray, shape (runs, K, 3)
-        Absolute position errors in m.
+    time (K,): Time of each sample in s.
+    truth (K, 6): True states.
+    track: Estimates, leading axis ``runs``.
+    error (runs, K, 3): Absolute position errors in m.
     """
 
     time: Annotated[FloatArray, exactly(None)]
@@ -50,29 +44,14 @@ def run_example(
 ) -> ExampleRuns:
     """Run the simulation example of Fig 6.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent measurement records.
-    rng : numpy.random.Generator
-        Source of the measurement noise, see `simulate`.
-    gate : {None, "upper", "two-sided"}
-        See `ekf`.
-    start : array_like, shape (6,) or (runs, 6), optional
-        Estimate of the state at the first sample; the one that Table 2 prints if None.
-    P0 : array_like, shape (6, 6), optional
-        Its covariance; that of the scenario, 0.1 I, if None.
-    keep : sequence of str
-        Fields of the track that are wanted, see `ekf`.
-
-    Returns
-    -------
-    ExampleRuns
-
-    Raises
-    ------
-    ValueError
-        If an argument is refused by `simulate` or `ekf`.
+    runs: Number of independent measurement records.
+    rng: Source of the measurement noise, see `simulate`.
+    gate: See `ekf`.
+    start (6,) or (runs, 6): Estimate of the state at the first sample; the one that Table 2 prints
+        if None.
+    P0 (6, 6): Its covariance; that of the scenario, 0.1 I, if None.
+    keep: Fields of the track that are wanted, see `ekf`.
+    Raises ValueError if an argument is refused by `simulate` or `ekf`.
 
     Notes
     -----

@@ -30,10 +30,7 @@ def _study():
 def noise_levels() -> FloatArray:
     """Return the variances of the noise levels of the figure.
 
-    Returns
-    -------
-    ndarray, shape (31,)
-        In Hz^2; read-only.
+    Returns (31,): In Hz^2; read-only.
     """
     noise = _study().noise
     low, high = np.log10([noise.lowest, noise.highest])
@@ -45,10 +42,7 @@ def noise_levels() -> FloatArray:
 def error_limits() -> tuple[float, float]:
     """Return the limits that the text states for the averaged errors.
 
-    Returns
-    -------
-    position, velocity : float
-        In m and m/s.
+    Returns position, velocity: In m and m/s.
     """
     limits = _study().limits
     return limits.position, limits.velocity
@@ -63,24 +57,16 @@ def _ours(name):
 class SweepReading:
     """An interpretation of the text on Fig 4: one choice for each point that it leaves open.
 
-    Attributes
-    ----------
-    velocity : {"center", "direction", "disc", "square"}
-        How a velocity is drawn. "center": towards the middle of the array, at a uniform speed.
-        "direction": any direction with v_x < 0, at a uniform speed. "disc" and "square": uniform
-        in the half with v_x < 0 of a disc of radius `speed[1]`, or of a square of twice that side.
-    speed : pair of float
-        Least and largest speed in m/s; the least is for "center" and "direction" only.
-    shared : bool
-        Whether one draw serves all grid points (of "center": one speed), or each has its own.
-    likelihood : {"constant_velocity", "stationary"}
-        See `ml_initialize`; the simulated target does what the likelihood says.
-    spacing : float
-        Of the grid, in m.
-    box : {"wide", "approaching", "region"}
-        Which bounds the search has.
-    axis : {"y", "x"}
-        Along which the array stands. The text gives its length only.
+    velocity: How a velocity is drawn. "center": towards the middle of the array, at a uniform
+        speed. "direction": any direction with v_x < 0, at a uniform speed. "disc" and "square":
+        uniform in the half with v_x < 0 of a disc of radius `speed[1]`, or of a square of twice
+        that side.
+    speed: Least and largest speed in m/s; the least is for "center" and "direction" only.
+    shared: Whether one draw serves all grid points (of "center": one speed), or each has its own.
+    likelihood: See `ml_initialize`; the simulated target does what the likelihood says.
+    spacing: Of the grid, in m.
+    box: Which bounds the search has.
+    axis: Along which the array stands. The text gives its length only.
 
     Notes
     -----
@@ -102,17 +88,11 @@ class SweepReading:
 class NoiseSweep:
     """Errors of the start, averaged over the grid: one value for each level and each draw.
 
-    Attributes
-    ----------
-    variance : ndarray, shape (L,)
-        Of the noise, in Hz^2.
-    position, velocity : ndarray, shape (L, D)
-        Mean size of the errors in m and m/s.
-    median_position, median_velocity : ndarray, shape (L, D)
-        Medians over the grid.
-    bound_position, bound_velocity : ndarray, shape (L, D)
-        Mean sizes of the errors that an unbiased and normally distributed estimate would have at
-        the Cramér-Rao bound, averaged over the grid.
+    variance (L,): Of the noise, in Hz^2.
+    position, velocity (L, D): Mean size of the errors in m and m/s.
+    median_position, median_velocity (L, D): Medians over the grid.
+    bound_position, bound_velocity (L, D): Mean sizes of the errors that an unbiased and normally
+        distributed estimate would have at the Cramér-Rao bound, averaged over the grid.
     """
 
     variance: Annotated[FloatArray, exactly(None)]
@@ -137,33 +117,16 @@ def run_noise_sweep(
 ) -> NoiseSweep:
     """Run the study of Fig 4.
 
-    Parameters
-    ----------
-    levels : iterable of int, optional
-        Numbers of the noise levels, 0 to 30; all if None.
-    draws : int, optional
-        Number of velocity draws; as many as the figure has markers at a level if None.
-    rng : numpy.random.Generator
-        Source of velocities and noise. Fewer levels or draws give the same values of those asked
+    levels: Numbers of the noise levels, 0 to 30; all if None.
+    draws: Number of velocity draws; as many as the figure has markers at a level if None.
+    rng: Source of velocities and noise. Fewer levels or draws give the same values of those asked
         for.
-    reading : SweepReading, optional
-        What the text leaves open; `SweepReading()` if None.
-    bound : bool
-        Whether the bounds are wanted; else they are NaN.
-    progress : bool
-        Whether to show a bar on standard error.
-    workers : int, optional
-        See `ml_initialize`. The result does not depend on it.
-
-    Returns
-    -------
-    NoiseSweep
-
-    Raises
-    ------
-    ValueError
-        If a level is not one of 0 to 30, `draws` is not a positive whole number, or the reading
-        names something unknown.
+    reading: What the text leaves open; `SweepReading()` if None.
+    bound: Whether the bounds are wanted; else they are NaN.
+    progress: Whether to show a bar on standard error.
+    workers: See `ml_initialize`. The result does not depend on it.
+    Raises ValueError if a level is not one of 0 to 30, `draws` is not a positive whole number, or
+        the reading names something unknown.
 
     Examples
     --------
@@ -215,14 +178,8 @@ _PARTS = (np.s_[:2], np.s_[3:5])
 def mean_norm(P: Annotated[FloatArray, shaped(2, 2, check=covariances)]) -> FloatArray:
     """Return the mean length of a normally distributed vector in a plane.
 
-    Parameters
-    ----------
-    P : array_like, shape (..., 2, 2)
-        Covariance; the mean is zero.
-
-    Returns
-    -------
-    ndarray, shape (...)
+    P (..., 2, 2): Covariance; the mean is zero.
+    Returns (...)
 
     Notes
     -----
@@ -247,14 +204,7 @@ def mean_norm(P: Annotated[FloatArray, shaped(2, 2, check=covariances)]) -> Floa
 def sweep_array(axis: Literal["x", "y"] | None = None) -> RadarArray:
     """Return the sensors of the study.
 
-    Parameters
-    ----------
-    axis : {"x", "y"}, optional
-        Along which they stand, which the text does not say; that of `SweepReading()` if None.
-
-    Returns
-    -------
-    RadarArray
+    axis: Along which they stand, which the text does not say; that of `SweepReading()` if None.
 
     Examples
     --------
@@ -271,15 +221,8 @@ def sweep_array(axis: Literal["x", "y"] | None = None) -> RadarArray:
 def grid_points(spacing: Positive | None = None) -> FloatArray:
     """Return the positions of the study.
 
-    Parameters
-    ----------
-    spacing : float, optional
-        In m; that of the text if None.
-
-    Returns
-    -------
-    ndarray, shape (M, 2)
-        In m.
+    spacing: In m; that of the text if None.
+    Returns (M, 2): In m.
 
     Examples
     --------

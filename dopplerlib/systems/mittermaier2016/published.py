@@ -23,26 +23,15 @@ class PublishedFigure3:
 
     The first axis of a map is x, upwards in the figure; the second is y, to the right.
 
-    Attributes
-    ----------
-    x, y : ndarray, shape (39,)
-        Places in m.
-    error : ndarray, shape (2, 39, 39)
-        Errors in m, one map for each entry of `samples`; NaN where not known.
-    below : ndarray of bool, shape (2, 39, 39)
-        Where the error is only known to be below `lowest`.
-    array : RadarArray
-        Sensors as the figure draws them.
-    velocity : ndarray, shape (3,)
-        Of the target in m/s, the same at every place.
-    samples : tuple of int
-        Number of samples behind each map.
-    T, sigma_f : float
-        Sampling interval in s, standard deviation of the Doppler shifts in Hz.
-    top_speed : float
-        Speed of the drives in m/s, to which the search is restricted.
-    lowest, highest : float
-        First and last contour in m.
+    x, y (39,): Places in m.
+    error (2, 39, 39): Errors in m, one map for each entry of `samples`; NaN where not known.
+    below (2, 39, 39): Where the error is only known to be below `lowest`.
+    array: Sensors as the figure draws them.
+    velocity (3,): Of the target in m/s, the same at every place.
+    samples: Number of samples behind each map.
+    T, sigma_f: Sampling interval in s, standard deviation of the Doppler shifts in Hz.
+    top_speed: Speed of the drives in m/s, to which the search is restricted.
+    lowest, highest: First and last contour in m.
     """
 
     x: Annotated[FloatArray, exactly(None)]
@@ -76,26 +65,20 @@ class PublishedFigure3:
 class PublishedFigure6:
     """The curves of Fig 6, read off the paper's vector graphics.
 
-    Attributes
-    ----------
-    time : ndarray, shape (1001,)
-        Time of each sample in s.
-    error : ndarray, shape (1001, 3)
-        Absolute position errors in m; NaN above the clipped axis where they cannot be known.
-    nis : ndarray, shape (1001,)
-        Normalized innovation squared.
-    skipped : ndarray of bool, shape (1001,)
-        Samples at which the state was only predicted. The paper does not say so: inferred from
-        the curves, and unknown (False) at the first sample.
-    start : ndarray, shape (6,)
-        Initial estimate that the drawn marker implies: its x in m, the rest as in Table 2.
-    first_error : ndarray, shape (3,)
-        Absolute position errors of the first sample in m; that of x from the 3-D view.
-    path_time : ndarray, shape (50,)
-        Times of the estimated positions drawn in the scene, from sample 21 on. The figure has one
-        more at the first sample, for which the error curves cannot decide on the position.
-    path : ndarray, shape (50, 3)
-        These positions in m, inverted from the 3-D view with the help of the error curves.
+    time (1001,): Time of each sample in s.
+    error (1001, 3): Absolute position errors in m; NaN above the clipped axis where they cannot be
+        known.
+    nis (1001,): Normalized innovation squared.
+    skipped (1001,): Samples at which the state was only predicted. The paper does not say so:
+        inferred from the curves, and unknown (False) at the first sample.
+    start (6,): Initial estimate that the drawn marker implies: its x in m, the rest as in Table 2.
+    first_error (3,): Absolute position errors of the first sample in m; that of x from the 3-D
+        view.
+    path_time (50,): Times of the estimated positions drawn in the scene, from sample 21 on. The
+        figure has one more at the first sample, for which the error curves cannot decide on the
+        position.
+    path (50, 3): These positions in m, inverted from the 3-D view with the help of the error
+        curves.
     """
 
     time: Annotated[FloatArray, exactly(None)]
@@ -113,12 +96,9 @@ class PublishedFigure6:
 class PublishedFigure4:
     """The dots of Fig 4, read off the paper's vector graphics.
 
-    Attributes
-    ----------
-    variance : ndarray, shape (31,)
-        Of the noise, in Hz^2.
-    position, velocity : ndarray, shape (31, 20)
-        Averaged errors in m and m/s, one column for each sequence in which they are drawn.
+    variance (31,): Of the noise, in Hz^2.
+    position, velocity (31, 20): Averaged errors in m and m/s, one column for each sequence in which
+        they are drawn.
     """
 
     variance: Annotated[FloatArray, exactly(None)]
@@ -131,26 +111,15 @@ class PublishedFigure4:
 class Reported:
     """All that the paper states and a computer can use.
 
-    Attributes
-    ----------
-    scenario : Scenario
-        The simulation example of Section 4 and Table 2.
-    table2 : Published
-        True initial state `x0` and estimate `x_ml`.
-    quoted : Published
-        Numbers that Section 4 quotes in words; units are in the names.
-    signal_chain : Published
-        What is said about the signal chain; units are in the names.
-    figure3 : PublishedFigure3
-        The error maps.
-    figure4_study : Published
-        Settings of the study of Fig 4; under `ours` what the paper leaves open.
-    figure4 : PublishedFigure4
-        Its dots.
-    figure6 : PublishedFigure6
-        The curves of the example.
-    sources : dict of str to str
-        Where those stand that do not say it themselves.
+    scenario: The simulation example of Section 4 and Table 2.
+    table2: True initial state `x0` and estimate `x_ml`.
+    quoted: Numbers that Section 4 quotes in words; units are in the names.
+    signal_chain: What is said about the signal chain; units are in the names.
+    figure3: The error maps.
+    figure4_study: Settings of the study of Fig 4; under `ours` what the paper leaves open.
+    figure4: Its dots.
+    figure6: The curves of the example.
+    sources: Where those stand that do not say it themselves.
     """
 
     scenario: Scenario
@@ -167,10 +136,6 @@ class Reported:
 @cache
 def reported() -> Reported:
     """Return the values that the paper states.
-
-    Returns
-    -------
-    Reported
 
     Examples
     --------

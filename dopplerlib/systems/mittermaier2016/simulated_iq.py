@@ -29,14 +29,10 @@ _HEAD = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
 def simulated_recording() -> tuple[Recording, FloatArray, FloatArray]:
     """Simulate the recording from its seed.
 
-    Returns
-    -------
-    recording : Recording
-        Six channels of one second, with the modules' faults in them (`MODULE_FAULTS`).
-    time : ndarray, shape (K,)
-        Times in s from the first sample.
-    truth : ndarray, shape (K, 6)
-        True states there.
+    Returns recording: Six channels of one second, with the modules' faults in them
+        (`MODULE_FAULTS`).
+        time (K,): Times in s from the first sample.
+        truth (K, 6): True states there.
     """
     s = reported().scenario
     rng = np.random.default_rng(SIMULATED["seed"])
@@ -52,22 +48,10 @@ def simulated_recording() -> tuple[Recording, FloatArray, FloatArray]:
 def write_simulated_iq(folder: str | PathLike[str]) -> list[Path]:
     """Write the recording as SigMF and its truth as CSV.
 
-    Parameters
-    ----------
-    folder : path-like
-        Where to write ``simulated_recording.sigmf-meta``,
-        ``simulated_recording.sigmf-data`` and ``simulated_recording.truth.csv``. Older ones are
-        replaced.
-
-    Returns
-    -------
-    list of Path
-        The three files.
-
-    Raises
-    ------
-    ValueError
-        If `folder` is none that exists.
+    folder: Where to write ``simulated_recording.sigmf-meta``, ``simulated_recording.sigmf-data``
+        and ``simulated_recording.truth.csv``. Older ones are replaced.
+    Returns: The three files.
+    Raises ValueError if `folder` is none that exists.
     """
     if not os.path.isdir(folder):
         raise ValueError(f"folder must be a folder that exists, got {str(folder)!r}")
@@ -91,24 +75,11 @@ def read_simulated_iq(
 ) -> tuple[Baseband, FloatArray, FloatArray]:
     """Read the recording and its truth.
 
-    Parameters
-    ----------
-    folder : path-like, optional
-        Where the three files are; those that come with the library if None.
-
-    Returns
-    -------
-    iq : Baseband
-        Samples with the leading axis ``runs`` of length 1, as `track_iq` takes them.
-    time : ndarray, shape (K,)
-        Times in s from the first sample.
-    truth : ndarray, shape (K, 6)
-        True states there.
-
-    Raises
-    ------
-    ValueError
-        If the recording is not sound, or its wavelength is not that of the scenario.
+    folder: Where the three files are; those that come with the library if None.
+    Returns iq: Samples with the leading axis ``runs`` of length 1, as `track_iq` takes them.
+        time (K,): Times in s from the first sample.
+        truth (K, 6): True states there.
+    Raises ValueError if the recording is not sound, or its wavelength is not that of the scenario.
     """
     shipped = on_disk(results(), *_FILES)
     with shipped if folder is None else nullcontext(Path(folder)) as folder:

@@ -24,14 +24,9 @@ Likelihood = Literal["constant_velocity", "stationary"]
 class Starts:
     """Estimates of the first state of the simulation example from short records.
 
-    Attributes
-    ----------
-    start : InitialEstimate
-        What `ml_initialize` returns, leading axis ``runs``.
-    position : ndarray, shape (runs,)
-        Distance in m between estimate and truth.
-    velocity : ndarray, shape (runs,)
-        The same of the velocity in m/s.
+    start: What `ml_initialize` returns, leading axis ``runs``.
+    position (runs,): Distance in m between estimate and truth.
+    velocity (runs,): The same of the velocity in m/s.
     """
 
     start: InitialEstimate
@@ -45,23 +40,11 @@ def start_box(
 ) -> tuple[FloatArray, FloatArray]:
     """Return a room before the ring, and the drives' velocities, as a box for `ml_initialize`.
 
-    Parameters
-    ----------
-    reach, near : float
-        Largest and least x in m.
-    side : float
-        Largest y and z in m, either way.
-
-    Returns
-    -------
-    lower, upper : ndarray, shape (6,)
-        In m and m/s. The paper says that position and velocity were restricted, and gives the
-        speed of the drives; the room is our assumption.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite and positive, or `near` is not below `reach`.
+    reach, near: Largest and least x in m.
+    side: Largest y and z in m, either way.
+    Returns lower, upper (6,): In m and m/s. The paper says that position and velocity were
+        restricted, and gives the speed of the drives; the room is our assumption.
+    Raises ValueError if a number is not finite and positive, or `near` is not below `reach`.
 
     Examples
     --------
@@ -86,29 +69,13 @@ def table2_starts(
 ) -> Starts:
     """Estimate the start of Table 2 from new noise.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of the noise, see `simulate`.
-    samples : int, optional
-        Length of a record; that of the paper, ten, if None.
-    likelihood : {"constant_velocity", "stationary"}
-        What the estimator assumes, see `ml_initialize`. The target moves in any case.
-    box : pair of array_like, shape (6,), optional
-        Where to search; `start_box()` if None.
-    array : RadarArray, optional
-        Other sensors than those of the paper.
-
-    Returns
-    -------
-    Starts
-
-    Raises
-    ------
-    ValueError
-        If an argument is refused by `simulate` or `ml_initialize`.
+    runs: Number of independent records.
+    rng: Source of the noise, see `simulate`.
+    samples: Length of a record; that of the paper, ten, if None.
+    likelihood: What the estimator assumes, see `ml_initialize`. The target moves in any case.
+    box (6,): Where to search; `start_box()` if None.
+    array: Other sensors than those of the paper.
+    Raises ValueError if an argument is refused by `simulate` or `ml_initialize`.
 
     Examples
     --------
@@ -134,28 +101,14 @@ def start_misfit(
 ) -> float:
     """Return the distance of a state's shifts from those of the true start of Table 2.
 
-    Parameters
-    ----------
-    x : array_like, shape (6,)
-        State at the first sample in m and m/s.
-    samples : int, optional
-        Length of the record; that of the paper, ten, if None.
-    likelihood : {"constant_velocity", "stationary"}
-        Whether the states move on during the record.
-    rounding : float
-        By how much each component of both states may be off, in m and m/s: half a unit of the
+    x (6,): State at the first sample in m and m/s.
+    samples: Length of the record; that of the paper, ten, if None.
+    likelihood: Whether the states move on during the record.
+    rounding: By how much each component of both states may be off, in m and m/s: half a unit of the
         last printed digit.
-
-    Returns
-    -------
-    float
-        Root of the summed squared differences over the variance of the noise: the states'
+    Returns: Root of the summed squared differences over the variance of the noise: the states'
         distance in standard deviations. With rounding it is the least one, to first order.
-
-    Raises
-    ------
-    ValueError
-        If `x` is not one finite state, or another argument is refused.
+    Raises ValueError if `x` is not one finite state, or another argument is refused.
 
     Notes
     -----
@@ -186,22 +139,11 @@ def start_misfit(
 def samples_needed(error: Positive | None = None, *, array: RadarArray | None = None) -> int:
     """Return the number of samples at which the bound on the position falls to an error.
 
-    Parameters
-    ----------
-    error : float, optional
-        Root mean square position error in m; the error that Table 2 prints if None.
-    array : RadarArray, optional
-        Other sensors than those of the paper.
-
-    Returns
-    -------
-    int
-        Least number of samples of the moving target.
-
-    Raises
-    ------
-    ValueError
-        If an argument is refused, or a record as long as the example does not suffice.
+    error: Root mean square position error in m; the error that Table 2 prints if None.
+    array: Other sensors than those of the paper.
+    Returns: Least number of samples of the moving target.
+    Raises ValueError if an argument is refused, or a record as long as the example does not
+        suffice.
 
     Examples
     --------

@@ -21,35 +21,17 @@ def local_start(
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Minimize the squared misfit to the average of some samples, from one guess.
 
-    Parameters
-    ----------
-    z : array_like, shape (runs, K, N)
-        Doppler measurements in Hz.
-    array : RadarArray
-        The N sensors.
-    guess : array_like, shape (6,)
-        Where the search begins.
-    box : pair of array_like, shape (6,)
-        Lower and upper bounds of the state.
-    gradient : {"exact", "differences"}
-        What guides the search. The report leaves it to SciPy, which takes finite differences;
-        they end within about their own noise of the exact gradient, and take several times as
-        long.
-
-    Returns
-    -------
-    x : ndarray, shape (runs, 6)
-        Where the search ended.
-    misfit : ndarray, shape (runs,)
-        Sum of the squared residuals there, in Hz^2.
-    converged : ndarray of bool, shape (runs,)
-        Whether it says that it succeeded.
-
-    Raises
-    ------
-    ValueError
-        If `gradient` is unknown, an argument has the wrong shape, or a lower bound is above the
-        upper one.
+    z (runs, K, N): Doppler measurements in Hz.
+    array: The N sensors.
+    guess (6,): Where the search begins.
+    box (6,): Lower and upper bounds of the state.
+    gradient: What guides the search. The report leaves it to SciPy, which takes finite differences;
+        they end within about their own noise of the exact gradient, and take several times as long.
+    Returns x (runs, 6): Where the search ended.
+        misfit (runs,): Sum of the squared residuals there, in Hz^2.
+        converged (runs,): Whether it says that it succeeded.
+    Raises ValueError if `gradient` is unknown, an argument has the wrong shape, or a lower bound is
+        above the upper one.
 
     Notes
     -----

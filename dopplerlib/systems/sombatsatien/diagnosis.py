@@ -18,14 +18,8 @@ from .variants import Plane, PostMortem, ring_scenario
 def nearer_to_twin(result: PostMortem) -> BoolArray:
     """Return which runs started nearer to the twin of the true state than to the state itself.
 
-    Parameters
-    ----------
-    result : PostMortem
-        Runs with the ring in the plane x = 0; see `planar_twin`.
-
-    Returns
-    -------
-    ndarray of bool, shape (runs,)
+    result: Runs with the ring in the plane x = 0; see `planar_twin`.
+    Returns (runs,)
 
     Examples
     --------
@@ -45,15 +39,8 @@ def nearer_to_twin(result: PostMortem) -> BoolArray:
 def final_bound(plane: Plane) -> float:
     """Return the least root mean square error of the final position, given the whole record.
 
-    Parameters
-    ----------
-    plane : {"z", "x"}
-        Plane of the ring.
-
-    Returns
-    -------
-    float
-        In m: the Cramér-Rao bound for a target at constant velocity.
+    plane: Plane of the ring.
+    Returns: In m: the Cramér-Rao bound for a target at constant velocity.
 
     Examples
     --------
@@ -70,15 +57,8 @@ def final_bound(plane: Plane) -> float:
 def measures(result: PostMortem) -> dict[str, FloatArray]:
     """Return four numbers for each run: two of error, two of consistency.
 
-    Parameters
-    ----------
-    result : PostMortem
-        Runs of one variant.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (runs,)
-        By name and unit.
+    result: Runs of one variant.
+    Returns (runs,): By name and unit.
 
     Examples
     --------
@@ -99,15 +79,8 @@ def measures(result: PostMortem) -> dict[str, FloatArray]:
 def outcomes(result: PostMortem) -> dict[str, FloatArray]:
     """Return the quantities that the report prints of its own run, for each of these runs.
 
-    Parameters
-    ----------
-    result : PostMortem
-        Runs of the report's system.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (runs,)
-        By name and unit; `reported_outcomes` has the report's.
+    result: Runs of the report's system.
+    Returns (runs,): By name and unit; `reported_outcomes` has the report's.
 
     Examples
     --------
@@ -129,10 +102,7 @@ def outcomes(result: PostMortem) -> dict[str, FloatArray]:
 def reported_outcomes() -> dict[str, float]:
     """Return the results of the report under the names that `outcomes` uses for ours.
 
-    Returns
-    -------
-    dict of str to float
-        By name and unit.
+    Returns: By name and unit.
     """
     run = reported().run
     return {
@@ -148,14 +118,8 @@ def reported_outcomes() -> dict[str, float]:
 def mirrored(x: States) -> FloatArray:
     """Return states mirrored at the plane z = 0: a ring in that plane sees no difference.
 
-    Parameters
-    ----------
-    x : array_like, shape (..., 6)
-        States in m and m/s.
-
-    Returns
-    -------
-    ndarray, shape (..., 6)
+    x (..., 6): States in m and m/s.
+    Returns (..., 6)
 
     Examples
     --------

@@ -15,19 +15,12 @@ from ...replication.published import Published, read_published
 class Reported:
     """All that the report states and a computer can use.
 
-    Attributes
-    ----------
-    scenario : Scenario
-        The simulation.
-    start : Published
-        How the report finds its initial estimate: from the average of the first `samples`, by a
+    scenario: The simulation.
+    start: How the report finds its initial estimate: from the average of the first `samples`, by a
         search from `guess` between `lower` and `upper`; and the `estimate` that it found.
-    noise : Published
-        The `seed` of its noise, in NumPy's legacy generator.
-    run : Published
-        Results of its one run, in m and m/s.
-    sources : dict of str to str
-        Where those stand that do not say it themselves.
+    noise: The `seed` of its noise, in NumPy's legacy generator.
+    run: Results of its one run, in m and m/s.
+    sources: Where those stand that do not say it themselves.
     """
 
     scenario: Scenario
@@ -40,10 +33,6 @@ class Reported:
 @cache
 def reported() -> Reported:
     """Return the values that the report states.
-
-    Returns
-    -------
-    Reported
 
     Examples
     --------

@@ -23,24 +23,11 @@ def student_jacobian(
 ) -> FloatArray:
     """Return the derivative of the Doppler shifts, with the report's signs or the correct ones.
 
-    Parameters
-    ----------
-    x : array_like, shape (..., 6)
-        States in m and m/s.
-    array : RadarArray
-        The N sensors.
-    jacobian : {"as reported", "derived"}
-        "as reported": the three columns that belong to the position have the wrong sign.
-
-    Returns
-    -------
-    ndarray, shape (..., N, 6)
-        In Hz per m and Hz per m/s.
-
-    Raises
-    ------
-    ValueError
-        If `jacobian` is neither, or an argument is refused by `doppler_jacobian`.
+    x (..., 6): States in m and m/s.
+    array: The N sensors.
+    jacobian: "as reported": the three columns that belong to the position have the wrong sign.
+    Returns (..., N, 6): In Hz per m and Hz per m/s.
+    Raises ValueError if `jacobian` is neither, or an argument is refused by `doppler_jacobian`.
 
     Examples
     --------
@@ -66,34 +53,16 @@ def student_ekf(
 ) -> Track:
     """Track a target as the report does: predict, then update in Joseph form.
 
-    Parameters
-    ----------
-    z : array_like, shape (runs, K, N)
-        Doppler measurements in Hz.
-    array : RadarArray
-        The N sensors.
-    x0 : array_like, shape (6,) or (runs, 6)
-        State one interval before the first sample.
-    P0 : array_like, shape (6, 6)
-        Its covariance.
-    T : float
-        Sampling interval in s.
-    sigma_a : float
-        Standard deviation of the acceleration in m/s^2; Q has rank one.
-    sigma_f : float
-        Standard deviation of the measurements in Hz.
-    jacobian : {"as reported", "derived"}
-        See `student_jacobian`. With "derived" this is `dopplerlib.ekf`, written another way.
-
-    Returns
-    -------
-    Track
-        Leading axis ``runs``.
-
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong shape or is not finite, or `jacobian` is unknown.
+    z (runs, K, N): Doppler measurements in Hz.
+    array: The N sensors.
+    x0 (6,) or (runs, 6): State one interval before the first sample.
+    P0 (6, 6): Its covariance.
+    T: Sampling interval in s.
+    sigma_a: Standard deviation of the acceleration in m/s^2; Q has rank one.
+    sigma_f: Standard deviation of the measurements in Hz.
+    jacobian: See `student_jacobian`. With "derived" this is `dopplerlib.ekf`, written another way.
+    Returns: Leading axis ``runs``.
+    Raises ValueError if an argument has the wrong shape or is not finite, or `jacobian` is unknown.
 
     Examples
     --------

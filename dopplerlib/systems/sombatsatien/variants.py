@@ -29,20 +29,13 @@ LONG = 100  # samples of the "long" start: a tenth of the record
 class PostMortem:
     """Runs of one variant of the report's system.
 
-    Attributes
-    ----------
-    time : ndarray, shape (K,)
-        Times of the tracked samples in s; the first ones went into the start.
-    truth : ndarray, shape (K, 6)
-        True states.
-    true_start : ndarray, shape (6,)
-        True state one interval before the first tracked sample, where the filter starts.
-    start : ndarray, shape (runs, 6)
-        Estimates with which the filter starts.
-    track : Track
-        What the filter made of them, leading axis ``runs``.
-    position_error, velocity_error : ndarray, shape (runs, K)
-        Distances to the truth in m and m/s.
+    time (K,): Times of the tracked samples in s; the first ones went into the start.
+    truth (K, 6): True states.
+    true_start (6,): True state one interval before the first tracked sample, where the filter
+        starts.
+    start (runs, 6): Estimates with which the filter starts.
+    track: What the filter made of them, leading axis ``runs``.
+    position_error, velocity_error (runs, K): Distances to the truth in m and m/s.
     """
 
     time: Annotated[FloatArray, exactly(None)]
@@ -68,15 +61,8 @@ class PostMortem:
 def ring_scenario(plane: Plane) -> Scenario:
     """Return the simulation of the report with the ring in either plane.
 
-    Parameters
-    ----------
-    plane : {"z", "x"}
-        z = 0 as in the report, or x = 0 as in the paper that it replicates, with the first sensor
-        on +y.
-
-    Returns
-    -------
-    Scenario
+    plane: z = 0 as in the report, or x = 0 as in the paper that it replicates, with the first
+        sensor on +y.
 
     Examples
     --------
@@ -94,10 +80,7 @@ def ring_scenario(plane: Plane) -> Scenario:
 def reported_record() -> FloatArray:
     """Return the measurements of the report's one run, noise included.
 
-    Returns
-    -------
-    ndarray, shape (1000, 6)
-        Doppler measurements in Hz.
+    Returns (1000, 6): Doppler measurements in Hz.
 
     Notes
     -----
@@ -121,33 +104,19 @@ def post_mortem(
 ) -> PostMortem:
     """Run the report's system, or a repaired one.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator or None
-        Source of the measurement noise, see `simulate`. Not needed with `z`.
-    jacobian : {"as reported", "derived"}
-        See `student_jacobian`.
-    plane : {"z", "x"}
-        Plane of the ring, see `ring_scenario`.
-    start : {"as reported", "global", "long", "truth"} or array_like, shape (6,) or (runs, 6)
-        "as reported": one descent, see `local_start`. "global": `ml_initialize` in the same box, on
-        the same ten samples, for a target that moves. "long": the same on a hundred samples, and
-        `P0` is its covariance. "truth": the true state. Or states of one's own.
-    P0 : array_like, shape (6, 6), optional
-        Covariance of the start; that of the report, 0.1 I, if None and the start brings none.
-    z : array_like, shape (runs, 1000, 6), optional
-        Measurements in Hz, for what would be simulated.
-
-    Returns
-    -------
-    PostMortem
-
-    Raises
-    ------
-    ValueError
-        If an argument is not one of those above, or is refused by `simulate` or the filter.
+    runs: Number of independent records.
+    rng: Source of the measurement noise, see `simulate`. Not needed with `z`.
+    jacobian: See `student_jacobian`.
+    plane: Plane of the ring, see `ring_scenario`.
+    start (6,) or (runs, 6): "as reported": one descent, see `local_start`. "global":
+        `ml_initialize` in the same box, on the same ten samples, for a target that moves. "long":
+        the same on a hundred samples, and `P0` is its covariance. "truth": the true state. Or
+        states of one's own.
+    P0 (6, 6): Covariance of the start; that of the report, 0.1 I, if None and the start brings
+        none.
+    z (runs, 1000, 6): Measurements in Hz, for what would be simulated.
+    Raises ValueError if an argument is not one of those above, or is refused by `simulate` or the
+        filter.
 
     Notes
     -----
@@ -192,18 +161,10 @@ def post_mortem(
 def repairs(runs: Runs, *, rng: np.random.Generator) -> dict[str, PostMortem]:
     """Run every combination of repairs on the same noise.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of the measurement noise.
-
-    Returns
-    -------
-    dict of str to PostMortem
-        By what is repaired: the "sign" of the Jacobian, the "geometry" of the ring, the "start" by
-        a global search. The first is "as reported"; the last is "all, longer start", see
+    runs: Number of independent records.
+    rng: Source of the measurement noise.
+    Returns: By what is repaired: the "sign" of the Jacobian, the "geometry" of the ring, the
+        "start" by a global search. The first is "as reported"; the last is "all, longer start", see
         `post_mortem`.
 
     Examples
@@ -241,22 +202,10 @@ def repairs(runs: Runs, *, rng: np.random.Generator) -> dict[str, PostMortem]:
 def consistent_runs(runs: Runs, *, rng: np.random.Generator) -> PostMortem:
     """Run the repaired filter from unbiased starts with errors of the covariance that it assumes.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of randomness.
-
-    Returns
-    -------
-    PostMortem
-        Runs of a filter with which nothing is wrong.
-
-    Raises
-    ------
-    ValueError
-        If `runs` is not a positive whole number, or `rng` is not a generator.
+    runs: Number of independent records.
+    rng: Source of randomness.
+    Returns: Runs of a filter with which nothing is wrong.
+    Raises ValueError if `runs` is not a positive whole number, or `rng` is not a generator.
 
     Examples
     --------

@@ -60,42 +60,24 @@ def ablated_ekf(
 ) -> Track:
     """Track a target like `ekf`, with the linearization under control.
 
-    Parameters
-    ----------
-    z : array_like, shape (runs, K, N)
-        Doppler measurements in Hz.
-    array : RadarArray
-        The N sensors.
-    x0 : array_like, shape (6,) or (runs, 6)
-        State one interval before the first sample, in m and m/s.
-    P0 : array_like, shape (6, 6)
-        Its covariance.
-    T, sigma_a, sigma_f : float
-        Sampling interval in s, standard deviations of the acceleration in m/s^2 and of a
-        measurement in Hz.
-    noise : {"shared", "per_axis"}
-        See `constant_velocity`.
-    path : array_like, shape (K, 6), optional
-        A path known to the experimenter, usually the true one. Needed by the next two switches.
-    tangent_at : {"estimate", "path"}
-        Where the Jacobian is evaluated. With "path" it is the same in every run, and so is P.
-    curvature : float
-        How much of the bend there is, from 1, the Doppler shift as it is, to 0: the shift is what
-        the tangent says, as seen from the path. On the path nothing changes, whatever it is.
-    second_order : bool
-        Whether the filter knows of the bend to second order: the mean of what the tangent misses is
-        added to the predicted measurement, and its covariance to S.
-
-    Returns
-    -------
-    Track
-        P has the leading axis 1 if it is the same in every run, else ``runs``.
-
-    Raises
-    ------
-    ValueError
-        If `tangent_at` is unknown, a switch needs a path and there is none, or an argument has
-        the wrong shape.
+    z (runs, K, N): Doppler measurements in Hz.
+    array: The N sensors.
+    x0 (6,) or (runs, 6): State one interval before the first sample, in m and m/s.
+    P0 (6, 6): Its covariance.
+    T, sigma_a, sigma_f: Sampling interval in s, standard deviations of the acceleration in m/s^2
+        and of a measurement in Hz.
+    noise: See `constant_velocity`.
+    path (K, 6): A path known to the experimenter, usually the true one. Needed by the next two
+        switches.
+    tangent_at: Where the Jacobian is evaluated. With "path" it is the same in every run, and so is
+        P.
+    curvature: How much of the bend there is, from 1, the Doppler shift as it is, to 0: the shift is
+        what the tangent says, as seen from the path. On the path nothing changes, whatever it is.
+    second_order: Whether the filter knows of the bend to second order: the mean of what the tangent
+        misses is added to the predicted measurement, and its covariance to S.
+    Returns: P has the leading axis 1 if it is the same in every run, else ``runs``.
+    Raises ValueError if `tangent_at` is unknown, a switch needs a path and there is none, or an
+        argument has the wrong shape.
 
     Notes
     -----
@@ -166,22 +148,13 @@ def ablated_ekf(
 class Consistency:
     """Estimates, NEES and NIS of many runs of one filter, thinned in time.
 
-    Attributes
-    ----------
-    time : ndarray, shape (M,)
-        The times kept, in s from the first sample.
-    truth : ndarray, shape (M, 6)
-        True states.
-    x : ndarray, shape (runs, M, 6)
-        Estimates.
-    P : ndarray, shape (runs or 1, M, 6, 6)
-        Their covariances as the filter reports them.
-    nees : ndarray, shape (runs, M)
-        Normalized estimation error squared.
-    nis : ndarray, shape (runs, M)
-        Normalized innovation squared.
-    nis_average : ndarray, shape (runs,)
-        Average of NIS over all samples of the record, not only those kept.
+    time (M,): The times kept, in s from the first sample.
+    truth (M, 6): True states.
+    x (runs, M, 6): Estimates.
+    P (runs or 1, M, 6, 6): Their covariances as the filter reports them.
+    nees (runs, M): Normalized estimation error squared.
+    nis (runs, M): Normalized innovation squared.
+    nis_average (runs,): Average of NIS over all samples of the record, not only those kept.
     """
 
     time: Annotated[FloatArray, exactly(None)]
@@ -210,41 +183,20 @@ def consistency_runs(
 ) -> Consistency:
     """Run the simulation example without a gate, and compare its errors with their covariances.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of the measurement noise, see `simulate`: run 3 is the same in any number of runs.
-    keep : sequence of int, optional
-        Numbers of the samples to keep, from 0; all if None.
-    samples : int, optional
-        Length of the records; that of the scenario if None.
-    start : array_like, shape (6,) or (runs, 6), optional
-        Estimate at the first sample; that of Table 2 if None.
-    P0 : array_like, shape (6, 6), optional
-        Its covariance; that of the scenario, 0.1 I, if None.
-    noise : {"shared", "per_axis"}
-        See `constant_velocity`.
-    sigma_a : float, optional
-        Standard deviation of the push that the filter assumes, in m/s^2; that of the scenario if
-        None.
-    sigma_f : array_like, broadcast to (K, N), optional
-        Standard deviation that the filter assumes, in Hz; that of the scenario if None.
-    chunk : int
-        Runs filtered at a time, so that memory does not grow with `runs`.
-    **switches
-        `tangent_at`, `curvature`, `second_order` of `ablated_ekf`, which is used if there are any;
-        its path is the truth.
-
-    Returns
-    -------
-    Consistency
-
-    Raises
-    ------
-    ValueError
-        If an argument is refused by `simulate`, `ekf` or `ablated_ekf`.
+    runs: Number of independent records.
+    rng: Source of the measurement noise, see `simulate`: run 3 is the same in any number of runs.
+    keep: Numbers of the samples to keep, from 0; all if None.
+    samples: Length of the records; that of the scenario if None.
+    start (6,) or (runs, 6): Estimate at the first sample; that of Table 2 if None.
+    P0 (6, 6): Its covariance; that of the scenario, 0.1 I, if None.
+    noise: See `constant_velocity`.
+    sigma_a: Standard deviation of the push that the filter assumes, in m/s^2; that of the scenario
+        if None.
+    sigma_f: Standard deviation that the filter assumes, in Hz; that of the scenario if None.
+    chunk: Runs filtered at a time, so that memory does not grow with `runs`.
+    **switches: `tangent_at`, `curvature`, `second_order` of `ablated_ekf`, which is used if there
+        are any; its path is the truth.
+    Raises ValueError if an argument is refused by `simulate`, `ekf` or `ablated_ekf`.
 
     Examples
     --------
@@ -283,11 +235,8 @@ def consistency_runs(
 def matched_P0() -> FloatArray:
     """Return a covariance of the start whose size is that of the errors that Table 2 prints.
 
-    Returns
-    -------
-    ndarray, shape (6, 6)
-        Diagonal; the same variance for the three positions, in m^2, and for the three velocities,
-        in m^2/s^2, so that the mean squares of the two errors are the printed ones.
+    Returns (6, 6): Diagonal; the same variance for the three positions, in m^2, and for the three
+        velocities, in m^2/s^2, so that the mean squares of the two errors are the printed ones.
     """
     error = reported().table2.x_ml - reported().table2.x0
     variance = [np.mean(error[:3] ** 2)] * 3 + [np.mean(error[3:] ** 2)] * 3
@@ -298,19 +247,11 @@ def matched_P0() -> FloatArray:
 def range_claims(result: Consistency) -> tuple[FloatArray, FloatArray]:
     """Return the actual error of the range, and the standard deviation that the filter reports.
 
-    Parameters
-    ----------
-    result : Consistency
-        Runs of one filter.
-
-    Returns
-    -------
-    actual : ndarray, shape (M,)
-        Size of the error along the line of sight from the origin, in m: the median over the runs of
-        its absolute value, divided by that of a standard normal number, so that lost runs count
-        no more than others.
-    claimed : ndarray, shape (M,)
-        Median over the runs of its standard deviation as the filter reports it, in m.
+    result: Runs of one filter.
+    Returns actual (M,): Size of the error along the line of sight from the origin, in m: the median
+        over the runs of its absolute value, divided by that of a standard normal number, so that
+        lost runs count no more than others.
+        claimed (M,): Median over the runs of its standard deviation as the filter reports it, in m.
 
     Examples
     --------

@@ -49,14 +49,9 @@ OPTIONS = {
 class ExampleReadings:
     """Runs of many readings of the simulation example, described by a few numbers.
 
-    Attributes
-    ----------
-    option : dict of str to ndarray of int, shape (runs,)
-        For each question of `OPTIONS`, which of its answers a run was made with.
-    summary : ndarray, shape (runs, 25)
-        Numbers named in `SUMMARIES`; errors, averages and counts are logarithms.
-    published : ndarray, shape (25,)
-        The same of the published run.
+    option (runs,): For each question of `OPTIONS`, which of its answers a run was made with.
+    summary (runs, 25): Numbers named in `SUMMARIES`; errors, averages and counts are logarithms.
+    published (25,): The same of the published run.
     """
 
     option: dict[str, np.ndarray]
@@ -87,19 +82,11 @@ class ExampleReadings:
         Every summary is first turned into a normal score, by its rank among all runs and the
         published one: heavy tails and units do not matter.
 
-        Parameters
-        ----------
-        count : int
-            How many.
-        decorrelate : bool
-            Whether distance is that of Mahalanobis, in which numbers that say the same count once.
-        only : sequence of int, optional
-            Which summaries count; all if None.
-
-        Returns
-        -------
-        ndarray of int, shape (count,)
-            The nearest first.
+        count: How many.
+        decorrelate: Whether distance is that of Mahalanobis, in which numbers that say the same
+            count once.
+        only: Which summaries count; all if None.
+        Returns (count,): The nearest first.
 
         Examples
         --------
@@ -122,17 +109,9 @@ class ExampleReadings:
     def shares(self, count: Count, **how: Any) -> dict[str, dict[str, ConfidenceInterval]]:
         """Return the fraction of every option among the nearest runs.
 
-        Parameters
-        ----------
-        count : int
-            Number of nearest runs.
-        **how
-            See `nearest`.
-
-        Returns
-        -------
-        dict of dict of ConfidenceInterval
-            By question and answer. All answers to a question were equally frequent beforehand.
+        count: Number of nearest runs.
+        **how: See `nearest`.
+        Returns: By question and answer. All answers to a question were equally frequent beforehand.
 
         Examples
         --------
@@ -153,15 +132,8 @@ class ExampleReadings:
 def ruled_out(shares: dict[str, dict[str, ConfidenceInterval]]) -> set[tuple[str, str]]:
     """Return the answers that another one beats by ten to one, on the whole of both intervals.
 
-    Parameters
-    ----------
-    shares : dict of dict of ConfidenceInterval
-        From `ExampleReadings.shares`.
-
-    Returns
-    -------
-    set of tuple
-        Question and answer.
+    shares: From `ExampleReadings.shares`.
+    Returns: Question and answer.
 
     Examples
     --------
@@ -182,22 +154,11 @@ def example_readings(runs: Runs, *, rng: np.random.Generator) -> ExampleReadings
 
     The gate is the two-sided one, which the figure itself shows.
 
-    Parameters
-    ----------
-    runs : int
-        Number of runs, at least one for each mixture of process noise and noise at the start; it
+    runs: Number of runs, at least one for each mixture of process noise and noise at the start; it
         is rounded down to a multiple of their number, 15.
-    rng : numpy.random.Generator
-        Source of the measurement noise and of the choices.
-
-    Returns
-    -------
-    ExampleReadings
-
-    Raises
-    ------
-    ValueError
-        If `runs` is smaller than 15 or not a whole number, or `rng` is not a generator.
+    rng: Source of the measurement noise and of the choices.
+    Raises ValueError if `runs` is smaller than 15 or not a whole number, or `rng` is not a
+        generator.
     """
     groups = list(product(range(5), range(3)))
     each = _checks.whole_number("runs", runs, least=len(groups)) // len(groups)
@@ -230,19 +191,10 @@ def example_readings(runs: Runs, *, rng: np.random.Generator) -> ExampleReadings
 def example_summary(error: Errors, nis: Nis, skipped: Booleans) -> FloatArray:
     """Describe runs by the numbers named in `SUMMARIES`.
 
-    Parameters
-    ----------
-    error : ndarray, shape (..., 1001, 3)
-        Absolute position errors in m.
-    nis : ndarray, shape (..., 1001)
-        Normalized innovations squared.
-    skipped : ndarray of bool, shape (..., 1001)
-        Samples at which the state was only predicted.
-
-    Returns
-    -------
-    ndarray, shape (..., 25)
-        NaN or infinite where an error is unknown or zero.
+    error (..., 1001, 3): Absolute position errors in m.
+    nis (..., 1001): Normalized innovations squared.
+    skipped (..., 1001): Samples at which the state was only predicted.
+    Returns (..., 25): NaN or infinite where an error is unknown or zero.
 
     Examples
     --------
@@ -277,15 +229,9 @@ def still_counts(error: Errors, nis: Nis) -> tuple[IntArray, IntArray]:
     A sample stands still if no error changes by more than a quarter of what is usual in its block
     of 25 samples. The first block is left out: there the drawn errors are not all known.
 
-    Parameters
-    ----------
-    error, nis
-        See `example_summary`.
-
-    Returns
-    -------
-    low, high : ndarray, shape (...)
-        Number of samples that stand still with a NIS below and above the 95 % interval.
+    error, nis: See `example_summary`.
+    Returns low, high (...): Number of samples that stand still with a NIS below and above the 95 %
+        interval.
 
     Examples
     --------

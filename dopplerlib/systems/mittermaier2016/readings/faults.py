@@ -24,25 +24,12 @@ from .ablation import Noise, ablated_ekf
 def linear_world(runs: Runs, *, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
     """Return paths with random starts and pushes around the paper's, and their measurements.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of starts, pushes and noise.
-
-    Returns
-    -------
-    truth : ndarray, shape (runs, K, 6)
-        True states: the start has the covariance of the scenario, 0.1 I, and each axis is pushed
-        independently with `sigma_a`.
-    z : ndarray, shape (runs, K, N)
-        What the tangent at the paper's path makes of them, with noise, in Hz.
-
-    Raises
-    ------
-    ValueError
-        If `runs` is not a positive whole number, or `rng` is not a generator.
+    runs: Number of independent records.
+    rng: Source of starts, pushes and noise.
+    Returns truth (runs, K, 6): True states: the start has the covariance of the scenario, 0.1 I,
+        and each axis is pushed independently with `sigma_a`.
+        z (runs, K, N): What the tangent at the paper's path makes of them, with noise, in Hz.
+    Raises ValueError if `runs` is not a positive whole number, or `rng` is not a generator.
 
     Examples
     --------
@@ -79,23 +66,13 @@ def linear_filter(
 ) -> Track:
     """Track in the linear world.
 
-    Parameters
-    ----------
-    z : ndarray, shape (runs, K, N)
-        Measurements of `linear_world`.
-    noise : {"shared", "per_axis"}
-        Process noise; "per_axis" is right.
-    sigma_f, sigma_a : float, optional
-        Standard deviations of the measurement in Hz and of the push in m/s^2; right if None.
-    P0 : ndarray, shape (6, 6), optional
-        Covariance of the start; right if None.
-    start : ndarray, shape (6,), optional
-        By how much the start is moved; not at all if None.
-
-    Returns
-    -------
-    Track
-        With P and S of leading axis 1.
+    z (runs, K, N): Measurements of `linear_world`.
+    noise: Process noise; "per_axis" is right.
+    sigma_f, sigma_a: Standard deviations of the measurement in Hz and of the push in m/s^2; right
+        if None.
+    P0 (6, 6): Covariance of the start; right if None.
+    start (6,): By how much the start is moved; not at all if None.
+    Returns: With P and S of leading axis 1.
 
     Examples
     --------
@@ -117,20 +94,11 @@ def faulty_filters(
 ) -> Iterator[tuple[str, Track, FloatArray, FloatArray]]:
     """Yield filters with one fault each, the first with none.
 
-    Parameters
-    ----------
-    truth : ndarray, shape (runs, K, 6)
-        States of `linear_world`.
-    z : ndarray, shape (runs, K, N)
-        Their measurements.
-
-    Yields
-    ------
-    label : str
-        What is wrong.
-    track : Track
-    F, Q : ndarray, shape (6, 6)
-        Motion as the filter assumes it.
+    truth (runs, K, 6): States of `linear_world`.
+    z (runs, K, N): Their measurements.
+    Yields label: What is wrong.
+        track
+        F, Q (6, 6): Motion as the filter assumes it.
 
     Examples
     --------

@@ -56,18 +56,11 @@ Width = Annotated[float, between(0.001, 100)]
 class MapReading:
     """An interpretation of the figure, and its log-likelihood below that of the best one.
 
-    Attributes
-    ----------
-    orientation : str
-        One of `ORIENTATIONS`.
-    label : str
-        Which of the maps.
-    quantity : {"position", "state", "velocity"}
-        Whose error.
-    behind : float
-        By how much its log-likelihood is below that of the best reading.
-    deviation : float
-        Standard error of `behind`, from how it varies between places; zero for the best.
+    orientation: One of `ORIENTATIONS`.
+    label: Which of the maps.
+    quantity: Whose error.
+    behind: By how much its log-likelihood is below that of the best reading.
+    deviation: Standard error of `behind`, from how it varies between places; zero for the best.
     """
 
     orientation: str
@@ -94,26 +87,15 @@ def map_score(
 ) -> FloatArray:
     """Return the log-likelihood of every published value under draws of an error.
 
-    Parameters
-    ----------
-    error : ndarray, shape (39, 39, draws)
-        Draws, as `figure3` makes them, oriented as the figure.
-    published : PublishedFigure3
-        The digitized figure.
-    panel : int
-        0 for the left map, 1 for the right one.
-    width : float
-        Standard deviation of the kernel that smooths the draws, in powers of ten.
-    stray : float
-        Fraction of values that may be anything: half of them below the lowest contour, half within
-        three powers of ten above it.
-
-    Returns
-    -------
-    ndarray, shape (39, 39)
-        Per power of ten. Where the published error is only known to be below the lowest contour,
-        the logarithm of the probability of that. NaN where it is hidden, and on the lines x = 0
-        and y = 0, on one of which every reading has its sensors.
+    error (39, 39, draws): Draws, as `figure3` makes them, oriented as the figure.
+    published: The digitized figure.
+    panel: 0 for the left map, 1 for the right one.
+    width: Standard deviation of the kernel that smooths the draws, in powers of ten.
+    stray: Fraction of values that may be anything: half of them below the lowest contour, half
+        within three powers of ten above it.
+    Returns (39, 39): Per power of ten. Where the published error is only known to be below the
+        lowest contour, the logarithm of the probability of that. NaN where it is hidden, and on the
+        lines x = 0 and y = 0, on one of which every reading has its sensors.
 
     Examples
     --------
@@ -149,26 +131,13 @@ def map_readings(
 ) -> list[MapReading]:
     """Compare readings of one map of Fig 3: its orientation, its estimator, its quantity.
 
-    Parameters
-    ----------
-    maps : dict of str to ErrorMap
-        Our draws by label, all of the same number.
-    published : PublishedFigure3
-        The digitized figure.
-    panel : int
-        0 for the left map, 1 for the right one.
-    width : float
-        See `map_score`.
-
-    Returns
-    -------
-    list of MapReading
-        The best first.
-
-    Raises
-    ------
-    ValueError
-        If the maps have different numbers of draws: more of them give a smoother density.
+    maps: Our draws by label, all of the same number.
+    published: The digitized figure.
+    panel: 0 for the left map, 1 for the right one.
+    width: See `map_score`.
+    Returns: The best first.
+    Raises ValueError if the maps have different numbers of draws: more of them give a smoother
+        density.
 
     Examples
     --------

@@ -43,11 +43,8 @@ Pairs = Annotated[FloatArray, exactly(2, 2)]
 def sweep_readings() -> tuple[SweepReading, ...]:
     """Return the readings of Fig 4 that are compared, and each of which is simulated.
 
-    Returns
-    -------
-    tuple of SweepReading
-        Every velocity with either likelihood, one draw for all points or one for each. Then, for
-        some of them, what else could be different: the grid of the text, other boxes, the array
+    Returns: Every velocity with either likelihood, one draw for all points or one for each. Then,
+        for some of them, what else could be different: the grid of the text, other boxes, the array
         turned.
     """
     study = reported().figure4_study
@@ -80,12 +77,7 @@ def sweep_readings() -> tuple[SweepReading, ...]:
 
 
 def scored_levels() -> tuple[int, ...]:
-    """Return the numbers of the noise levels at which readings are compared.
-
-    Returns
-    -------
-    tuple of int
-    """
+    """Return the numbers of the noise levels at which readings are compared."""
     return tuple(reported().figure4_study.ours.comparison.levels.tolist())
 
 
@@ -96,16 +88,11 @@ class DotsStructure:
 
     Everything is for logarithms; position first, velocity second.
 
-    Attributes
-    ----------
-    mean : ndarray, shape (L, 2)
-        At each noise level.
-    between : ndarray, shape (2, 2)
-        Covariance of what a sequence keeps over all levels. Unbiased, so not always positive.
-    within : ndarray, shape (2, 2)
-        Covariance of what changes from dot to dot.
-    draws : float
-        Number of sequences that `mean` is the average of; infinite if it is exact.
+    mean (L, 2): At each noise level.
+    between (2, 2): Covariance of what a sequence keeps over all levels. Unbiased, so not always
+        positive.
+    within (2, 2): Covariance of what changes from dot to dot.
+    draws: Number of sequences that `mean` is the average of; infinite if it is exact.
     """
 
     mean: Annotated[FloatArray, exactly(None, 2, check=_logarithm)]
@@ -118,14 +105,7 @@ class DotsStructure:
 def dots_structure(position: Dots, velocity: Dots) -> DotsStructure:
     """Return the model of dots that are given.
 
-    Parameters
-    ----------
-    position, velocity : array_like, shape (L, D)
-        Mean errors in m and m/s: L levels of D sequences, both at least two.
-
-    Returns
-    -------
-    DotsStructure
+    position, velocity (L, D): Mean errors in m and m/s: L levels of D sequences, both at least two.
 
     Examples
     --------
@@ -153,17 +133,9 @@ def dots_structure(position: Dots, velocity: Dots) -> DotsStructure:
 def dots_log_likelihood(model: DotsStructure, position: Dots, velocity: Dots) -> float:
     """Return the log-likelihood of dots under a model, a sum over independent sequences.
 
-    Parameters
-    ----------
-    model : DotsStructure
-        From a simulation.
-    position, velocity : array_like, shape (L, D)
-        The dots, at the levels of the model.
-
-    Returns
-    -------
-    float
-        In nats. Only differences mean something.
+    model: From a simulation.
+    position, velocity (L, D): The dots, at the levels of the model.
+    Returns: In nats. Only differences mean something.
 
     Notes
     -----
@@ -220,23 +192,12 @@ def sweep_score(
 ) -> tuple[float, float, float]:
     """Return the log-likelihood of the published dots under our simulation of an interpretation.
 
-    Parameters
-    ----------
-    figure : NoiseSweep
-        Ours; many draws make the interval narrow.
-    published : PublishedFigure4
-        At least the levels of `figure`.
-    rng : numpy.random.Generator
-        Draws our sequences again, for the interval.
-    resamples : int
-        How often.
-
-    Returns
-    -------
-    score : float
-        Log-likelihood in nats; only differences between readings mean something.
-    low, high : float
-        Central 95 % of the score when our sequences are drawn again from themselves.
+    figure: Ours; many draws make the interval narrow.
+    published: At least the levels of `figure`.
+    rng: Draws our sequences again, for the interval.
+    resamples: How often.
+    Returns score: Log-likelihood in nats; only differences between readings mean something.
+        low, high: Central 95 % of the score when our sequences are drawn again from themselves.
 
     Examples
     --------
@@ -261,16 +222,9 @@ def sweep_score(
 def saved_sweep_readings(again: bool = False) -> list[tuple[SweepReading, float, float, float]]:
     """Return every reading with its score, the most likely first, as they are saved.
 
-    Parameters
-    ----------
-    again : bool
-        Whether to return, instead, the best reading with either likelihood, simulated once more
+    again: Whether to return, instead, the best reading with either likelihood, simulated once more
         with another seed.
-
-    Returns
-    -------
-    list of tuple
-        The reading, its score in nats, and the ends of its 95 % interval.
+    Returns: The reading, its score in nats, and the ends of its 95 % interval.
 
     Examples
     --------
@@ -288,10 +242,7 @@ def saved_sweep_readings(again: bool = False) -> list[tuple[SweepReading, float,
 def saved_noise_sweep() -> NoiseSweep:
     """Return the study in full, as ``make study NAME=noise_sweep`` left it.
 
-    Returns
-    -------
-    NoiseSweep
-        All levels and points of the grid, as many draws as the figure has markers at a level.
+    Returns: All levels and points of the grid, as many draws as the figure has markers at a level.
     """
     lines = read_lines("noise_sweep.csv", folder=results)
     table, levels = np.genfromtxt(lines, delimiter=",", names=True), noise_levels()
