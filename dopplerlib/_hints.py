@@ -13,6 +13,8 @@ import inspect
 import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial, wraps
+from math import inf
+from textwrap import indent
 from types import NoneType, UnionType
 from typing import (
     Annotated,
@@ -40,44 +42,48 @@ def checked(function: _T) -> _T:
     A hint may be a class, a type of numbers or text, `Literal`, a union of these and None,
     ``Iterable[...]``, ``tuple[...]`` or ``dict[..., ...]`` of them, an array, or ``Annotated`` with
     a check ``(name, value) -> value`` like those of `_checks`. Not checked are defaults, ``*args``
-    and ``**kwargs``, and what has another hint or none. It stands above `record` and `cache`.
+    and ``**kwargs``, what has another hint or none, and an `ArrayLike`: its shape depends on other
+    arguments, so that the function itself checks it. It stands above `record` and `cache`.
 
     Raises
     ------
     ValueError
-        From the decorated function: "<argument> must <expectation>, got <value>". An error from
-        deeper down, about a name that the caller does not know, is preceded by its arguments.
+        From the decorated function: "<argument> must <expectation>, got <value>". A docstring with
+        parameters and no such section gets one. An error from deeper down, about a name that the
+        caller does not know, is preceded by its arguments.
     """
     if isinstance(function, type):
         function.__init__ = checked(function.__init__)
+        function.__doc__ = _with_raises(function.__doc__)
         return function
     signature = inspect.signature(function)
+    named = [p for p in signature.parameters.values() if p.kind not in _COLLECTING]
 
     @cache  # when it is called first: a hint may name a class that stands further down
     def checks():
         hints = get_type_hints(function, include_extras=True)
-        named = [p.name for p in signature.parameters.values() if p.kind not in _COLLECTING]
-        found = {name: _check(hints[name]) for name in named if name in hints}
-        return {name: check for name, check in found.items() if check}
+        places = [i if p.kind is not p.KEYWORD_ONLY else inf for i, p in enumerate(named)]
+        found = [(i, p.name, _check(hints.get(p.name))) for i, p in zip(places, named, strict=True)]
+        return [each for each in found if each[2]]
 
     @wraps(function)
     def call(*args, **kwargs):
+        given = list(args)
+        for place, name, check in checks():
+            if place < len(given):
+                given[place] = check(name, given[place])
+            elif name in kwargs:
+                kwargs[name] = check(name, kwargs[name])
         try:
-            bound = signature.bind(*args, **kwargs)
-        except TypeError:
-            return function(*args, **kwargs)  # raises the same, with the function's name
-        arguments = bound.arguments
-        for name, check in checks().items():
-            if name in arguments:
-                arguments[name] = check(name, arguments[name])
-        try:
-            return function(*bound.args, **bound.kwargs)
+            return function(*given, **kwargs)
         except ValueError as error:
             first = re.match(r"\w+", str(error))
-            if first is None or first[0] in signature.parameters or "self" in arguments:
+            if first is None or first[0] in signature.parameters or named[0].name == "self":
                 raise
-            raise ValueError(f"{', '.join(arguments)} must suit each other: {error}") from error
+            arguments = ", ".join(signature.bind(*args, **kwargs).arguments)
+            raise ValueError(f"{arguments} must suit each other: {error}") from error
 
+    call.__doc__ = _with_raises(function.__doc__)
     return cast(_T, call)
 
 
@@ -138,6 +144,12 @@ Measurements = Annotated[FloatArray, exactly(None, None, None)]  # runs, times, 
 Booleans = Annotated[BoolArray, _checks.booleans]
 Array = Annotated[FloatArray, _checks.numbers]  # of any size, NaN too: what a figure draws
 
+_RAISES = """
+Raises
+------
+ValueError
+    If an argument is not of the kind described: "<argument> must <expectation>, got <value>".
+"""
 _COLLECTING = inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD
 _ARRAY_LIKE = frozenset(get_args(ArrayLike))  # a union, of which a larger union keeps the parts
 _PLAIN = {
@@ -147,6 +159,16 @@ _PLAIN = {
     str: _checks.text,
     np.random.Generator: _checks.generator,
 }
+
+
+def _with_raises(doc):
+    """Return a numpydoc docstring with a section on errors, behind arguments and result."""
+    found = re.search(r"\n( *)(Parameters|Attributes)\n", doc or "")
+    if found is None or "Raises\n" in doc:
+        return doc
+    places = [re.search(rf"\n{found[1]}{title}\n", doc) for title in ("Notes", "Examples")]
+    end = min((place.start() for place in places if place), default=len(doc.rstrip()) + 1)
+    return doc[:end].rstrip(" ") + indent(_RAISES, found[1]) + doc[end:]
 
 
 def _check(hint):
@@ -173,10 +195,9 @@ def _check(hint):
 
 def _either(parts):
     words = sum((get_args(part) for part in parts if get_origin(part) is Literal), ())
-    arrays = set(parts) >= _ARRAY_LIKE
-    drop = {NoneType, *(_ARRAY_LIKE if arrays else ())}
-    rest = [_check(p) for p in parts if p not in drop and get_origin(p) is not Literal]
-    rest += [_checks.numbers] * arrays
+    if set(parts) >= _ARRAY_LIKE:
+        return None
+    rest = [_check(p) for p in parts if p is not NoneType and get_origin(p) is not Literal]
 
     def either(name, value):
         if value is None and NoneType in parts:

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .._hints import Array, checked
-from .._typing import ArrayLike
 from ..model.doppler import doppler_shift
 from ..model.iso_doppler import iso_doppler_directions
 from ..model.radar_array import RadarArray
@@ -48,7 +47,7 @@ def doppler_curves(time: Array, shifts: Array, names: Sequence[str] | None = Non
 
 
 @checked
-def two_sensors(array: RadarArray, x: ArrayLike) -> Figure:
+def two_sensors(array: RadarArray, x: Array) -> Figure:
     """Draw the top view of a moving platform, and of the same scene from the platform.
 
     array: Two sensors or more in the plane z = 0.
@@ -89,7 +88,7 @@ def two_sensors(array: RadarArray, x: ArrayLike) -> Figure:
 
 @checked
 def iso_doppler_lines(
-    array: RadarArray, x: ArrayLike, extent: tuple[float, ...] = (0.0, 1.0, -0.45, 0.45)
+    array: RadarArray, x: Array, extent: tuple[float, ...] = (0.0, 1.0, -0.45, 0.45)
 ) -> Figure:
     """Draw the iso-Doppler lines of one sensor, and the lines of all sensors through a target.
 
@@ -143,7 +142,7 @@ def _draw_lines(ax, array, x, colors):
 
 @checked
 def iso_doppler_cones(
-    array: RadarArray, x: ArrayLike, azimuth: float = -62.0, elevation: float = 20.0
+    array: RadarArray, x: Array, azimuth: float = -62.0, elevation: float = 20.0
 ) -> Figure:
     """Draw the iso-Doppler cones of all sensors in space, and their cut at the target's range.
 
@@ -227,7 +226,7 @@ def sensitivities(time: Array, jacobian: Array, sigma_f: float) -> Figure:
 
 
 @checked
-def demonstration(javascript: str, array: RadarArray, x: ArrayLike) -> str:
+def demonstration(javascript: str, array: RadarArray, x: Array) -> str:
     """Draw a plane scene with sliders, its Doppler shifts and iso-Doppler lines, as HTML.
 
     javascript: Source of the function ``doppler_shift``, as `dopplerlib.derive.printers` prints it.

@@ -7,7 +7,6 @@ from matplotlib.colors import BoundaryNorm, LogNorm
 from matplotlib.figure import Figure
 
 from .._hints import Array, checked
-from .._typing import ArrayLike
 from ..model.radar_array import RadarArray
 from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, styled
 
@@ -17,7 +16,7 @@ _LEVELS = (0, 1, 2, 3, 10, 30, 100, 300, 1000)
 @checked
 def reduced_cost(
     panels: dict[str, tuple[Array, ...]],
-    marks: Sequence[dict[str, ArrayLike]],
+    marks: Sequence[dict[str, Array]],
     labels: Sequence[tuple[str, ...]],
 ) -> Figure:
     """Draw maps of the misfit that the best velocity leaves at every position.
@@ -118,7 +117,7 @@ def error_maps(
     y: Array,
     maps: dict[str, Array],
     arrays: Sequence[RadarArray],
-    velocities: Sequence[ArrayLike],
+    velocities: Sequence[Array],
     columns: int = 3,
     limits: tuple[float, ...] = (0.025, 1.0),
 ) -> Figure:
