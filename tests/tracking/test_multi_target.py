@@ -8,6 +8,7 @@ from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 from dopplerlib.model.polar_radar import polar_radar_h, polar_radar_jacobian
 from dopplerlib.tracking.association import greedy_assign
 from dopplerlib.tracking.multi_target import track_scans
+from tests.gate_edges import beside_the_gate
 
 T, K = 0.5, 20
 F, Q = ncv_transition(T, dim=1), cwna_process_noise(T, 0.1, dim=1)
@@ -37,6 +38,23 @@ def test_a_single_target_is_filtered_as_by_the_kalman_filter():
     np.testing.assert_allclose(track.P[1:], alone.P, rtol=1e-10, atol=1e-12)
     assert track.scan.tolist() == list(range(K)) and (track.detection == 0).all()
     assert track.confirmed.tolist() == [False] + [True] * (K - 1)
+
+
+@pytest.mark.parametrize("m", [1, 2])
+@pytest.mark.parametrize("probability", [0.9, 0.999])
+def test_the_gate_ends_at_the_quantile_for_the_components_of_a_detection(m, probability):
+    """Two states, one or two components; with twice the state's covariance R matters as well."""
+    H, R = np.eye(2)[:m], np.diag([0.04, 0.09])[:m, :m]
+    x0, P0 = np.array([1.0, 0.5]), np.array([[0.04, 0.01], [0.01, 0.09]])
+    for nu, inside in beside_the_gate(H @ (F @ P0 @ F.T + Q) @ H.T + R, probability):
+        scans = [[H @ x0], [H @ F @ x0 + nu]]
+        begin = lambda z: (np.tile(x0, (len(z), 1)), np.tile(P0, (len(z), 1, 1)))  # noqa: E731
+        first, *others = track_scans(
+            scans, F, Q, lambda x: x @ H.T, lambda x: H, R, begin, MANAGER,
+            gate_probability=probability,
+        )  # fmt: skip
+        assert (first.detection[1] == 0) == inside
+        assert len(others) == (not inside)  # what is outside starts a track of its own
 
 
 @pytest.mark.parametrize("assign", [None, greedy_assign])

@@ -6,6 +6,7 @@ from scipy.stats import chi2, multivariate_normal
 
 from dopplerlib import kf_update
 from dopplerlib.tracking.pda import pda_update
+from tests.gate_edges import beside_the_gate
 
 H = np.array([[1.0, 0.0], [0.3, 1.0]])
 R = np.array([[0.5, 0.1], [0.1, 0.3]])
@@ -42,6 +43,17 @@ def test_it_has_the_moments_of_the_enumerated_mixture(gate):
     assert step.missed == pytest.approx(weight[0])
     np.testing.assert_allclose(step.weight[step.weight > 0], weight[1:], rtol=1e-12)
     assert step.weight[3] == 0  # outside the gate
+
+
+@pytest.mark.parametrize("m", [1, 2])
+@pytest.mark.parametrize("gate", [0.9, 0.999])
+def test_the_gate_ends_at_the_quantile_for_the_components_of_a_detection(m, gate):
+    """Two states, one or two components: it is theirs that count."""
+    for nu, inside in beside_the_gate(H[:m] @ P @ H[:m].T + R[:m, :m], gate):
+        step = pda_update(
+            X, P, [H[:m] @ X + nu], H[:m], R[:m, :m], detection=0.9, density=0.1, gate=gate
+        )
+        assert (step.weight[0] > 0) == inside
 
 
 def test_a_lone_detection_without_false_ones_is_a_kalman_update():
