@@ -85,10 +85,11 @@ def test_a_csv_has_the_columns_that_its_readme_explains(path):
 @pytest.mark.parametrize("path", [p for p in FILES if p.suffix == ".json"], ids=name)
 def test_a_json_file_has_the_entries_that_its_readme_explains(path):
     content = json.loads(path.read_text(encoding="utf-8"))
-    assert list(content) == table_under(path.name, readme(path.parent))
+    title = re.sub(r"^\w+\.verdicts", "NAME.verdicts", path.name)  # the same in all of them
+    assert list(content) == table_under(title, readme(path.parent))
 
 
-@pytest.mark.parametrize("path", sorted(DATA.rglob("*.toml")), ids=name)
+@pytest.mark.parametrize("path", sorted(DATA.glob("*/*.toml")), ids=name)
 def test_a_toml_file_names_its_source(path):
     text = path.read_text(encoding="utf-8")
     tomllib.loads(text)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import Scenario
+from dopplerlib.replication.choices import Choice, read_choices
 from dopplerlib.replication.claims import Claim, read_claims
 from dopplerlib.replication.deviations import Deviation, read_deviations
 
@@ -18,7 +19,7 @@ TEXTS = {
 id = "nis"
 where = "Fig 6"
 statement = "NIS is near six"
-kind = "deterministic"
+form = "number"
 published = 5.82
 rounding = 0.005
 unit = "1"
@@ -28,6 +29,21 @@ cell = "nis"
 test = "tests/test_x.py::test_nis"
 note = "n"
 surrogate = "a walk"
+kind = "result"
+keys = ["5.82"]
+premises = "p"
+weight = "finding"
+choices = ["gate"]
+""",
+    "choice": """
+[[choice]]
+id = "gate"
+kind = "ours"
+meaning = "gate"
+values = ["none", "two-sided"]
+reason = "both are usual"
+since = 2026-11-29
+beyond = ["one-sided"]
 """,
     "deviation": """
 [[deviation]]
@@ -56,7 +72,12 @@ sigma_a = 0.4
 P0_diagonal = [0.1, 0.1, 0.1, 0.1, 0.1, 0.1]
 """,
 }
-READ = {"claim": read_claims, "deviation": read_deviations, "scenario": Scenario.from_toml}
+READ = {
+    "claim": read_claims,
+    "choice": read_choices,
+    "deviation": read_deviations,
+    "scenario": Scenario.from_toml,
+}
 each = pytest.mark.parametrize("what", READ)
 
 
@@ -129,7 +150,9 @@ BAD = {
     "of_text": ["1", "1.5", "true", "nan", "[1]", "['a']", "{a = 1}", "2020-01-01", "''"],
     "of_number": ["'x'", "true", "nan", "inf", "-1.5", "{a = 1}", "2020-01-01", "['a']", "[[1]]"],
     "of_list": ["'x'", "true", "1.0", "[nan, 1, 1, 1, 1, 1]", "{a = 1}", "['a']", "[]", "[true]"],
-    "claims": ["'x'", "1", "[1]", "['']", "{a = 1}", "[['a']]"],
+    "texts": ["'x'", "1", "[1]", "['']", "{a = 1}", "[['a']]"],
+    "values": ["'x'", "1", "['']", "['a', 1]", "{a = 1}", "[['a']]", "[nan]", "['none', 'none']"],
+    "date": ["'2026-11-29'", "1", "true", "[2026-11-29]", "12:00:00"],
 }
 CASES = [
     (what, name, value)
@@ -140,11 +163,17 @@ CASES = [
         if name in NUMBERS
         else "of_list"
         if name in LISTS
-        else "claims"
-        if name == "claims"
+        else "texts"
+        if name in ("claims", "choices", "keys")
+        else "values"
+        if name in ("values", "beyond")
+        else "date"
+        if name == "since"
         else "of_text"
     ]
-    if not (name in ("unit", "note", "surrogate") and value == "''")  # these may be empty
+    if not (
+        name in ("unit", "note", "surrogate", "premises") and value == "''"
+    )  # these may be empty
     and not (name == "published" and value == "-1.5")
 ]
 
@@ -157,16 +186,16 @@ def test_an_entry_of_a_wrong_kind_is_refused(what, name, value, tmp_path):
 
 
 def test_every_entry_was_tried():
-    for what, cls in (("claim", Claim), ("deviation", Deviation)):
+    for what, cls in (("claim", Claim), ("deviation", Deviation), ("choice", Choice)):
         tried = {name for of, name, _ in CASES if of == what}
-        assert tried == {field.name for field in fields(cls)} - {"relation"}
+        assert tried == {field.name for field in fields(cls)} - {"relation", "limit"}
 
 
 @pytest.mark.parametrize(
     ("what", "name"),
     [
         (what, field.name)
-        for what, cls in (("claim", Claim), ("deviation", Deviation))
+        for what, cls in (("claim", Claim), ("deviation", Deviation), ("choice", Choice))
         for field in fields(cls)
         if field.default is MISSING
     ],
@@ -177,11 +206,11 @@ def test_an_entry_that_is_missing_is_named(what, name, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("kind", "relation"),
-    [("relation", ""), ("relation", "'='"), ("random", "'<'"), ("random", "1")],
+    ("form", "relation"),
+    [("relation", ""), ("relation", "'='"), ("draw", "'<'"), ("draw", "1")],
 )
-def test_a_relation_belongs_to_a_relation_and_to_nothing_else(kind, relation, tmp_path):
-    text = TEXTS["claim"].replace('"deterministic"', f'"{kind}"')
+def test_a_relation_belongs_to_a_relation_and_to_nothing_else(form, relation, tmp_path):
+    text = TEXTS["claim"].replace('"number"', f'"{form}"')
     text += f"relation = {relation}\n" if relation else ""
     refused("claim", tmp_path / "a.toml", text, "relation of claim 'nis' must")
 

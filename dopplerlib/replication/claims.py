@@ -4,9 +4,15 @@ from .. import _checks, _toml
 from .._records import record
 from .._typing import FileSource
 
-VERDICTS = ("reproduced", "typical", "atypical", "contradicted", "underdetermined")
-KINDS = ("deterministic", "random", "relation")
+KINDS = ("result", "assumption", "demand", "inference")
+FORMS = ("number", "draw", "relation", "size")
+WEIGHTS = ("finding", "arithmetic", "misprint")
 RELATIONS = ("<", "<=", ">", ">=")
+OPEN = ("underdetermined", "undecided")
+# A result can be contradicted; what somebody assumes, demands or infers holds, or it fails.
+OF_RESULTS = ("reproduced", "typical", "atypical", "contradicted", *OPEN)
+OF_OTHERS = ("holds", "fails", *OPEN)
+VERDICTS = (*OF_RESULTS[:4], *OF_OTHERS)
 
 
 @record
@@ -21,18 +27,34 @@ class Claim:
         Section, equation, figure or table.
     statement : str
         The claim, in our words.
-    kind : {"deterministic", "random", "relation"}
-        A number that follows from what is given; the outcome of one random run; or a statement
-        that a quantity lies above or below a limit.
-    verdict : {"reproduced", "typical", "atypical", "contradicted", "underdetermined"}
-        The verdict on record. The tests compute it again.
+    form : {"number", "draw", "relation", "size"}
+        A number that follows from what is given; the outcome of one random run; a statement that a
+        quantity lies above or below a limit; or one that it is as large as published, within a
+        factor.
+    verdict : str
+        The verdict on record, see `judge`. The tests compute it again.
     page, cell : str
-        Chapter and cell that show it.
+        Chapter that shows the number, and the cell of it where the claim is tried.
     test : str
-        The test that would fail if it were otherwise, as ``path::name``.
+        A test that computes the number by another route, as ``path::name``.
+    kind : {"result", "assumption", "demand", "inference"}
+        What the document, or in an inference this book, says it as. Only a result can be
+        contradicted.
+    keys : tuple of str
+        Numbers or a few words by which its place is found in the document.
+    premises : str
+        What has to be so for the claim to be one; it is judged in a world in which it is. "" if
+        there is nothing.
+    weight : {"finding", "arithmetic", "misprint"}
+        Arithmetic on what is printed cannot fail, and a misprint is no finding: both are counted
+        apart.
+    choices : tuple of str
+        Names of the choices over which the evidence is swept.
     published : float or tuple of float, optional
         The number printed, or the limit of a relation. None if it is a curve or a statistic of
-        one, for which the evidence brings the number.
+        one, for which the evidence brings the number, or if the limit is one of our choices.
+    limit : str, optional
+        Name of the choice whose values are the limits of a relation, or the factors of a size.
     unit : str
         "" for a pure number.
     rounding : float
@@ -40,7 +62,8 @@ class Claim:
     relation : {"<", "<=", ">", ">="}, optional
         How the quantity lies to the limit.
     note : str
-        The contradiction, or the missing part.
+        The contradiction, or the missing part; a reading in which the document is right comes
+        first.
     surrogate : str
         Simulation that stands in for data which are not published, such as "a simulated walk". The
         verdict is then one on the simulation, and is counted apart. "" if there is none.
@@ -49,12 +72,18 @@ class Claim:
     id: str
     where: str
     statement: str
-    kind: str
+    form: str
     verdict: str
     page: str
     cell: str
     test: str
+    kind: str = "result"
+    keys: tuple = ()
+    premises: str = ""
+    weight: str = "finding"
+    choices: tuple = ()
     published: float | tuple | None = None
+    limit: str | None = None
     unit: str = ""
     rounding: float = 0.0
     relation: str | None = None
@@ -96,25 +125,50 @@ def check_claim(where: str, claim: Claim) -> None:
     _checks.instance("claim", claim, Claim)
     for name in ("id", "where", "statement", "page", "cell", "test"):
         _checks.text(f"{name} of {where}", getattr(claim, name), least=1)
-    for name in ("unit", "note", "surrogate"):
+    for name in ("unit", "note", "surrogate", "premises"):
         _checks.text(f"{name} of {where}", getattr(claim, name))
-    for name, choices in (("kind", KINDS), ("verdict", VERDICTS)):
+    for name in ("keys", "choices"):
+        for one in _checks.instance(f"{name} of {where}", getattr(claim, name), tuple):
+            _checks.text(f"{name} of {where}", one, least=1)
+    verdicts = OF_RESULTS if claim.kind == "result" else OF_OTHERS
+    for name, choices in (
+        ("kind", KINDS),
+        ("form", FORMS),
+        ("weight", WEIGHTS),
+        ("verdict", verdicts),
+    ):
         _checks.one_of(f"{name} of {where}", getattr(claim, name), choices)
+    _check_numbers(where, claim)
+    if claim.verdict in ("contradicted", "fails", *OPEN) and not claim.note:
+        raise ValueError(f"note of {where} must say why it is {claim.verdict}, got none")
+
+
+def _check_numbers(where, claim):
     if claim.published is not None:
         published = _checks.finite(f"published of {where}", claim.published)
-        if published.ndim > (claim.kind == "deterministic") or not published.size:
+        if published.ndim > (claim.form == "number") or not published.size:
             raise ValueError(
-                f"published of {where} must be one number, or a list of them for a deterministic "
-                f"claim, got an array of shape {published.shape}"
+                f"published of {where} must be one number, or a list of them for a claim on "
+                f"numbers, got an array of shape {published.shape}"
             )
     if _checks.one_number(f"rounding of {where}", claim.rounding) < 0:
         raise ValueError(f"rounding of {where} must not be negative, got {claim.rounding}")
-    if claim.kind == "relation":
+    if claim.form == "relation":
         _checks.one_of(f"relation of {where}", claim.relation, RELATIONS)
     elif claim.relation is not None:
         raise ValueError(
-            f"relation of {where} must be absent for other kinds than a relation, "
+            f"relation of {where} must be absent for other forms than a relation, "
             f"got {claim.relation!r}"
         )
-    if claim.verdict in ("contradicted", "underdetermined") and not claim.note:
-        raise ValueError(f"note of {where} must say why it is {claim.verdict}, got none")
+    if claim.limit is None:
+        if claim.form == "size":
+            raise ValueError(f"limit of {where} must name the choice of its factor, got none")
+        return
+    _checks.text(f"limit of {where}", claim.limit, least=1)
+    if claim.form not in ("relation", "size"):
+        raise ValueError(f"limit of {where} must be absent for a {claim.form}, got {claim.limit!r}")
+    if claim.form == "relation" and claim.published is not None:
+        raise ValueError(
+            f"published of {where} must be absent where the limit is a choice, "
+            f"got {claim.published}"
+        )

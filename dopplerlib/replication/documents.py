@@ -1,17 +1,19 @@
-"""The replicated documents, by name: claims and documented deviations."""
+"""The replicated documents, by name: claims, choices, sentences and documented deviations."""
 
 from importlib.resources.abc import Traversable
 
 from .. import _checks
 from .._data import data
 from .._records import record
+from .choices import Choice, read_choices
 from .claims import Claim, read_claims
 from .deviations import Deviations, read_deviations
+from .sentences import Sentences, read_sentences
 
 
 @record
 class Document:
-    """Claims and documented deviations of a document.
+    """Claims of a document, with what they rest on and what they leave open.
 
     Attributes
     ----------
@@ -21,6 +23,10 @@ class Document:
         Its claims.
     deviations : Deviations
         Where it leaves something open or contradicts itself.
+    choices : tuple of Choice
+        What its claims leave open: its own choices, and those that all documents share.
+    sentences : Sentences, optional
+        All that it says.
 
     Raises
     ------
@@ -38,12 +44,37 @@ class Document:
     name: str
     claims: tuple
     deviations: Deviations
+    choices: tuple = ()
+    sentences: Sentences | None = None
 
     def __post_init__(self):
         """Check the fields."""
         _checks.text("name", self.name, least=1)
         object.__setattr__(self, "claims", _checks.records("claims", self.claims, Claim))
         _checks.instance("deviations", self.deviations, Deviations)
+        object.__setattr__(self, "choices", _checks.records("choices", self.choices, Choice))
+        if self.sentences is not None:
+            _checks.instance("sentences", self.sentences, Sentences)
+
+    def choice(self, *names: str) -> tuple[Choice, ...]:
+        """Return choices by their names, as `sweep` takes them.
+
+        Parameters
+        ----------
+        *names : str
+            Of choices.
+
+        Returns
+        -------
+        tuple of Choice
+
+        Raises
+        ------
+        ValueError
+            If there is no such choice.
+        """
+        known = {one.id: one for one in self.choices}
+        return tuple(known[_checks.one_of("name", name, tuple(known))] for name in names)
 
 
 def documents() -> tuple[str, ...]:
@@ -117,8 +148,12 @@ def read_document(name: str) -> Document:
     'sensitivity'
     """
     _checks.one_of("name", name, documents())
+    own = data(name, "choices.toml")  # a document may have none of its own
+    sentences = data(name, "sentences.toml")
     return Document(
         name,
         read_claims(data_file(name, "claims.toml")),
         read_deviations(data_file(name, "deviations.toml")),
+        read_choices(data("choices.toml")) + (read_choices(own) if own.is_file() else ()),
+        read_sentences(sentences) if sentences.is_file() else None,
     )

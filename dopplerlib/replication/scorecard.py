@@ -1,25 +1,28 @@
-"""Scorecards: the verdicts on all claims of a document, as a table."""
+"""Scorecards: the verdicts on all claims of a document, as tables."""
 
 from collections import Counter
 
-import numpy as np
-
 from .. import _checks
 from .._records import record
-from ..evaluation.intervals import ConfidenceInterval
-from ._cells import badge, link, table
+from ._cells import badge, flips, link, ours, published, table
 from .claims import VERDICTS, Claim, check_claim
 from .verdicts import Judgment
+
+_COUNTED_APART = {
+    "arithmetic": "Arithmetic on what is printed, which cannot fail:",
+    "misprint": "Misprints:",
+    "follows": "What follows: assumptions, demands, and inferences of this book:",
+}
 
 
 @record
 class Scorecard:
-    """Judgments, shown as a table with links to the cells behind them.
+    """Judgments, shown as tables with links to the cells behind them.
 
     Attributes
     ----------
     judgments : tuple of Judgment
-        As `judge_all` returns them.
+        As `judge_all` or `read_judgments` returns them.
 
     Raises
     ------
@@ -30,7 +33,7 @@ class Scorecard:
     --------
     >>> from dopplerlib.replication.claims import Claim
     >>> from dopplerlib.replication.verdicts import judge
-    >>> claim = Claim("pi", "Sec 1", "the circle's number", "deterministic", "reproduced",
+    >>> claim = Claim("pi", "Sec 1", "the circle's number", "number", "reproduced",
     ...               "page", "cell", "test", published=3.14, rounding=0.005)
     >>> Scorecard([judge(claim, 3.14159)]).counts
     {'reproduced': 1}
@@ -49,31 +52,43 @@ class Scorecard:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of claims by verdict, in the order of the verdicts; without surrogates."""
+        """Number of results by verdict, in the order of the verdicts.
+
+        Without arithmetic, misprints, other kinds of statements, and surrogates.
+        """
         return _counts(self._groups().get("", []))
 
     def __repr__(self):
         lines = []
-        for surrogate, judgments in self._groups().items():
+        for group, judgments in self._groups().items():
             total = ", ".join(f"{count} {verdict}" for verdict, count in _counts(judgments).items())
-            on = f" on {surrogate}" if surrogate else ""
-            lines.append(f"{len(judgments)} claims{on}: {total}")
+            told = f" ({group})" if group else ""
+            lines.append(f"{len(judgments)} claims{told}: {total}")
         return "\n".join(lines) or "0 claims"
 
     def _repr_markdown_(self):
         parts = []
-        for surrogate, judgments in self._groups().items():
-            if surrogate:
-                parts.append(f"On {surrogate}; these verdicts do not count above:")
+        for group, judgments in self._groups().items():
+            if group:
+                on = f"On {group}; these verdicts do not count above:"
+                parts.append(_COUNTED_APART.get(group, on))
             parts.append(table(("claim", "published", "ours"), map(_row, judgments)))
         return "\n\n".join(parts)
 
     def _groups(self):
-        """Return the judgments by surrogate; those on the document itself come first."""
-        groups = {}
-        for one in sorted(self.judgments, key=lambda one: one.claim.surrogate != ""):
-            groups.setdefault(one.claim.surrogate, []).append(one)
-        return groups
+        """Return the judgments by what they count as; the findings of the document come first."""
+        groups: dict[str, list[Judgment]] = {name: [] for name in ("", *_COUNTED_APART)}
+        for one in self.judgments:
+            groups.setdefault(_group(one.claim), []).append(one)
+        return {name: found for name, found in groups.items() if found}
+
+
+def _group(claim):
+    if claim.surrogate:
+        return claim.surrogate
+    if claim.kind != "result":
+        return "follows"
+    return "" if claim.weight == "finding" else claim.weight
 
 
 def _counts(judgments):
@@ -85,23 +100,21 @@ def _row(judgment):
     claim = judgment.claim
     # The first sentence is what is claimed; others tell how it was made measurable.
     first, stop, rest = claim.statement.partition(". ")
-    said = [f"{badge('verdict', judgment.verdict)} {claim.where}"]
+    kind = "" if claim.kind == "result" else f" ({claim.kind})"
+    anchor = f'<span id="claim-{claim.id}"></span>'
+    said = [f"{anchor}{badge('verdict', judgment.verdict)} {claim.where}{kind}"]
     said.append(f"**{first}{stop.strip()}** {rest}".strip())
+    if claim.premises:
+        said.append(f"Provided that: {claim.premises}")
     if claim.note:
         said.append(claim.note)
     test = claim.test.split("::")[-1].replace("_", " ")
-    said.append(f'{link(claim)} · <span class="test">{test}</span>')
-    relation = f"{claim.relation} " if claim.relation else ""
-    published = f"{relation}{_number(judgment.published)} {claim.unit}".strip()
-    ours = [f"{_number(judgment.ours)} {claim.unit}".strip()]
-    if judgment.percentile is not None:
-        ours.append(f"published at the percentile {judgment.percentile}")
-    if judgment.reading is not None:
-        ours.append(f"nearest reading: {judgment.reading}")
-    return "<br>".join(said), published, "<br>".join(ours)
-
-
-def _number(value):
-    if isinstance(value, ConfidenceInterval):
-        return f"{value.value:.3g}" if value.low == value.high else str(value)
-    return ", ".join(f"{one:.4g}" for one in np.atleast_1d(value))
+    shown = f'<a href="{claim.page}.html#cell-judged">number</a>'
+    said.append(f'{shown} · {link(claim)} · <span class="test">{test}</span>')
+    found = [ours(judgment)]
+    if judgment.nearest.percentile is not None:
+        found.append(f"published at the percentile {judgment.nearest.percentile}")
+    if judgment.nearest.at:
+        at = ", ".join(f"{name} {value}" for name, value in judgment.nearest.at.items())
+        found.append(f"nearest at {at}")
+    return "<br>".join(said), published(judgment), "<br>".join(found + flips(judgment))

@@ -10,57 +10,119 @@ from .. import _checks
 from .._records import record
 from .._typing import ArrayLike
 from ..evaluation.intervals import ConfidenceInterval, proportion_interval
-from .claims import Claim, check_claim
-from .readings import Draws, Readings
+from .choices import Choice, check_choice
+from .claims import OPEN, Claim, check_claim
+from .evidence import Draws, Readings, Sweep, combinations
 
 # Share of our runs that a typical draw leaves on either side of it.
 _TAIL = 0.025
+# An interval of 95 % this many times as wide is left once in ten thousand: another seed agrees.
+_WIDER = 2
 
 _HOLDS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal}
+_BEST_FIRST = ("reproduced", "typical", "undecided", "atypical", "contradicted")
+_OF_OTHERS = {
+    "reproduced": "holds",
+    "typical": "holds",
+    "atypical": "fails",
+    "contradicted": "fails",
+}
 
 
 @record
-class Judgment:
-    """A verdict, with the claim and the evidence behind it.
+class Point:
+    """One comparison: for one value of each choice.
 
     Attributes
     ----------
-    claim : Claim
-        The claim.
+    at : dict
+        Value of each choice, by its name; the choice of the limit is the last one.
     verdict : str
-        See `Claim`.
+        See `judge`.
     ours : ConfidenceInterval or float or ndarray
         Our number; of a random run the median, with the interval in which 95 % of ours lie.
     published : float or tuple of float
         The number that it was compared with.
     percentile : ConfidenceInterval, optional
         Share of our runs below the published one, in percent, with its Monte Carlo interval.
-    reading : str, optional
-        The reading that comes nearest.
-    decided : bool
-        Whether the runs were enough: another seed would hardly change the verdict.
+    beyond : bool
+        Whether a value lies beyond its declared range, so that the verdict does not count.
     """
 
-    claim: Claim
+    at: dict
     verdict: str
     ours: ConfidenceInterval | float | np.ndarray
     published: float | tuple
     percentile: ConfidenceInterval | None = None
-    reading: str | None = None
-    decided: bool = True
+    beyond: bool = False
 
 
-def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
+@record
+class Judgment:
+    """A verdict, with the claim and all comparisons behind it.
+
+    Attributes
+    ----------
+    claim : Claim
+        The claim.
+    verdict : str
+        See `judge`.
+    points : tuple of Point
+        For every combination of what the claim leaves open; one if it leaves nothing open.
+    """
+
+    claim: Claim
+    verdict: str
+    points: tuple
+
+    @property
+    def nearest(self) -> Point:
+        """The comparison in the declared range that is kindest to the document."""
+        return min((one for one in self.points if not one.beyond), key=_distance)
+
+    @property
+    def flips(self) -> dict[str, dict[str, tuple[Any, ...]]]:
+        """For each choice on which the verdict hangs, its values by the verdicts found at them.
+
+        Verdicts that differ among the other choices are joined with "or".
+        """
+        within = [one for one in self.points if not one.beyond]
+        found: dict[str, dict[str, tuple[Any, ...]]] = {}
+        for name in within[0].at:
+            by_value: dict[Any, dict[str, None]] = {}
+            for one in within:
+                by_value.setdefault(one.at[name], {})[one.verdict] = None
+            if len({frozenset(verdicts) for verdicts in by_value.values()}) > 1:
+                table: dict[str, tuple[Any, ...]] = {}
+                for value, verdicts in by_value.items():
+                    label = " or ".join(sorted(verdicts))
+                    table[label] = (*table.get(label, ()), value)
+                found[name] = table
+        return found
+
+    @property
+    def turned(self) -> tuple[Point, ...]:
+        """Comparisons beyond the declared ranges that would change the verdict."""
+        return tuple(
+            one
+            for one in self.points
+            if one.beyond and _together([self.verdict, one.verdict]) != self.verdict
+        )
+
+
+def judge(claim: Claim, evidence: ArrayLike | Sweep, choices: Iterable[Choice] = ()) -> Judgment:
     """Compare a claim with the evidence.
 
     Parameters
     ----------
     claim : Claim
         The claim.
-    evidence : float, array_like, ConfidenceInterval, Draws or Readings
-        Our number for a deterministic claim (as many as are published); a `ConfidenceInterval`, or
-        a float without uncertainty, for a relation; `Draws` for a random run. `Readings` holds one
-        of these for each way to read the claim.
+    evidence : float, array_like, ConfidenceInterval, Draws or Sweep
+        Our number (as many as are published); a `ConfidenceInterval`, or a float without
+        uncertainty, for a relation or a size; `Draws` for a random run. A `Sweep` holds one of
+        these for each combination of the choices that the claim names.
+    choices : iterable of Choice
+        Those that the claim names, and any others.
 
     Returns
     -------
@@ -70,54 +132,50 @@ def judge(claim: Claim, evidence: ArrayLike) -> Judgment:
     ------
     ValueError
         If the claim is one that `read_claims` refuses, the evidence is not of the kind that it
-        needs, is NaN or an interval with its ends in the wrong order, or the published number is
-        missing or given twice.
+        needs, is NaN or an interval with its ends in the wrong order, the published number is
+        missing or given twice, a choice is not among `choices`, or a sweep leaves out a
+        combination of their values.
 
     Notes
     -----
-    * *reproduced*: a deterministic number within its rounding; a relation that holds on the whole
-      interval of our estimate.
+    * *reproduced*: a number within its rounding; a relation that holds, or a size within its
+      factor, on the whole interval of our estimate.
     * *typical*, *atypical*: a random outcome inside or outside the central 95 % of ours.
-    * *contradicted*: any other number; a relation that holds nowhere on the interval.
-    * *underdetermined*: the readings lead to different verdicts, or the interval of the estimate
-      holds the limit.
+    * *contradicted*: any other number; a relation or size that holds nowhere on the interval.
+    * *undecided*: our runs are too few to tell.
+    * *underdetermined*: what the document leaves open leads to different verdicts.
+
+    What is decided stays so on an interval of twice the width of 95 %. For other kinds of
+    statements than results, *holds* stands for the first two words and *fails* for the next two.
 
     Examples
     --------
     >>> from dopplerlib.replication.claims import Claim
-    >>> claim = Claim("pi", "Sec 1", "the circle's number", "deterministic", "reproduced",
+    >>> claim = Claim("pi", "Sec 1", "the circle's number", "number", "reproduced",
     ...               "page", "cell", "test", published=3.14, rounding=0.005)
     >>> judge(claim, 3.14159).verdict
     'reproduced'
     """
     check_claim(f"claim {getattr(claim, 'id', None)!r}", claim)
-    if isinstance(evidence, Readings):
-        return _judge_readings(claim, evidence)
-    published = _published(claim, evidence)
-    if claim.kind == "random":
-        if not isinstance(evidence, Draws):
-            raise _wrong(claim, "Draws", evidence)
-        return _judge_draw(claim, published, evidence)
-    if claim.kind == "relation":
-        if isinstance(evidence, (Readings, Draws)):
-            raise _wrong(claim, "a ConfidenceInterval or a float", evidence)
-        if not isinstance(evidence, ConfidenceInterval):
-            evidence = ConfidenceInterval(*[_checks.one_number(_name(claim), evidence)] * 3)
-        if not evidence.low <= evidence.value <= evidence.high:  # as it is not if one is NaN
-            raise _wrong(claim, "a ConfidenceInterval whose value lies between its ends", evidence)
-        return _judge_relation(claim, published, evidence)
-    if isinstance(evidence, (ConfidenceInterval, Draws)):
-        raise _wrong(claim, "a number", evidence)
-    ours = _checks.finite(_name(claim), evidence)
-    if np.shape(published) != ours.shape:
-        raise _wrong(claim, f"numbers of shape {np.shape(published)}", evidence)
-    # Half a unit of the last digit, and a little for the rounding of decimal fractions.
-    same = np.abs(ours - published) <= claim.rounding * (1 + 1e-9) + 1e-12 * np.abs(published)
-    verdict = "reproduced" if same.all() else "contradicted"
-    return Judgment(claim, verdict, ours if ours.ndim else float(ours), published)
+    known = {one.id: one for one in _checks.records("choices", choices, Choice)}
+    axes = [_choice(claim, name, known) for name in claim.choices]
+    limit = None if claim.limit is None else _choice(claim, claim.limit, known)
+    points = []
+    for at, piece in _pieces(claim, evidence, axes):
+        outside = any(at[one.id] in one.beyond for one in axes)
+        if limit is None:
+            points.append(_point(claim, piece, at, None, outside))
+            continue
+        for value in limit.values + (() if outside else limit.beyond):
+            there = at | {limit.id: value}
+            points.append(_point(claim, piece, there, value, outside or value in limit.beyond))
+    verdict = _together([one.verdict for one in points if not one.beyond])
+    return Judgment(claim, verdict, points)
 
 
-def judge_all(claims: Iterable[Claim], evidence: dict[str, Any]) -> tuple[Judgment, ...]:
+def judge_all(
+    claims: Iterable[Claim], evidence: dict[str, Any], choices: Iterable[Choice] = ()
+) -> tuple[Judgment, ...]:
     """Compare all claims of a document with the evidence.
 
     Parameters
@@ -126,6 +184,8 @@ def judge_all(claims: Iterable[Claim], evidence: dict[str, Any]) -> tuple[Judgme
         As `read_claims` returns them.
     evidence : dict
         Evidence by the id of the claim, for each of them and no others.
+    choices : iterable of Choice
+        As `read_choices` returns them.
 
     Returns
     -------
@@ -142,15 +202,14 @@ def judge_all(claims: Iterable[Claim], evidence: dict[str, Any]) -> tuple[Judgme
     A count of 7 that 50 runs of ours spread about, and one that they do not reach:
 
     >>> from dopplerlib.replication.claims import Claim
-    >>> claims = [Claim(name, "Sec 1", "a count", "random", "typical", "page", "cell", "test",
+    >>> claims = [Claim(name, "Sec 1", "a count", "draw", "typical", "page", "cell", "test",
     ...                 published=7.0) for name in ("near", "far")]
     >>> evidence = {"near": Draws(np.arange(50.0)), "far": Draws(100 + np.arange(50.0))}
     >>> [one.verdict for one in judge_all(claims, evidence)]
     ['typical', 'atypical']
-    >>> judge(claims[0], Readings({"mean": evidence["near"], "sum": evidence["far"]})).verdict
-    'underdetermined'
     """
     claims = _checks.records("claims", claims, Claim)
+    choices = _checks.records("choices", choices, Choice)
     _checks.instance("evidence", evidence, dict)
     names = [_checks.text("id of a claim", claim.id, least=1) for claim in claims]
     for name in names:
@@ -159,10 +218,63 @@ def judge_all(claims: Iterable[Claim], evidence: dict[str, Any]) -> tuple[Judgme
     for name in evidence:
         if name not in names:
             raise ValueError(f"evidence must belong to a claim, got {name!r}, which is none")
-    return tuple(judge(claim, evidence[claim.id]) for claim in claims)
+    return tuple(judge(claim, evidence[claim.id], choices) for claim in claims)
 
 
-def _judge_draw(claim, published, draws):
+def _choice(claim, name, known):
+    if name not in known:
+        raise ValueError(f"choices must hold those of {claim.id!r}, got none called {name!r}")
+    check_choice(f"choice {name!r}", known[name])
+    return known[name]
+
+
+def _pieces(claim, evidence, axes):
+    """Return the values of the choices, by their names, and the evidence for each of them."""
+    if isinstance(evidence, Readings):  # until every document has its choices declared
+        return [({"reading": name}, one) for name, one in evidence.by_name.items()]
+    if not axes:
+        return [({}, evidence)]
+    if not isinstance(evidence, Sweep):
+        raise _wrong(claim, f"a Sweep over {', '.join(claim.choices)}", evidence)
+    if tuple(evidence.axes) != claim.choices:
+        raise _wrong(claim, f"a Sweep over {', '.join(claim.choices)}", evidence.axes)
+    wanted, points = combinations(axes), evidence.points
+    if not isinstance(points, dict) or set(points) != set(wanted):
+        raise _wrong(claim, f"a Sweep at {wanted}", points)
+    return [(dict(zip(claim.choices, at, strict=True)), points[at]) for at in wanted]
+
+
+def _together(verdicts):
+    """Return the verdict over several comparisons."""
+    decided = {one for one in verdicts if one not in OPEN}
+    if len(decided) > 1:
+        return "underdetermined"
+    return next((one for one in reversed(OPEN) if one in verdicts), *decided)
+
+
+def _point(claim, evidence, at, limit, beyond):
+    published = _published(claim, evidence, limit)
+    judged = {"number": _number, "draw": _draw, "relation": _relation, "size": _size}[claim.form]
+    verdict, ours, percentile = judged(claim, evidence, published, limit)
+    if claim.kind != "result":
+        verdict = _OF_OTHERS.get(verdict, verdict)
+    return Point(at, verdict, ours, published, percentile, beyond)
+
+
+def _number(claim, evidence, published, limit):
+    if isinstance(evidence, (ConfidenceInterval, Draws, Sweep)):
+        raise _wrong(claim, "a number", evidence)
+    ours = _checks.finite(_name(claim), evidence)
+    if np.shape(published) != ours.shape:
+        raise _wrong(claim, f"numbers of shape {np.shape(published)}", evidence)
+    # Half a unit of the last digit, and a little for the rounding of decimal fractions.
+    same = np.abs(ours - published) <= claim.rounding * (1 + 1e-9) + 1e-12 * np.abs(published)
+    return "reproduced" if same.all() else "contradicted", ours if ours.ndim else float(ours), None
+
+
+def _draw(claim, draws, published, limit):
+    if not isinstance(draws, Draws):
+        raise _wrong(claim, "Draws", draws)
     values = _checks.finite(_name(claim), draws.values)
     if values.ndim != 1 or not len(values):
         raise _wrong(claim, "Draws with a number from each run", draws)
@@ -170,59 +282,66 @@ def _judge_draw(claim, published, draws):
     below = proportion_interval(values <= published + claim.rounding, 0.999)
     above = proportion_interval(values >= published - claim.rounding, 0.999)
     tail = min(below, above, key=lambda share: share.value)
+    verdict = "typical" if tail.value >= _TAIL else "atypical"
     low, middle, high = np.quantile(values, [_TAIL, 0.5, 1 - _TAIL])
     share = proportion_interval(values < published)
-    return Judgment(
-        claim,
-        "typical" if tail.value >= _TAIL else "atypical",
+    return (
+        "undecided" if tail.low < _TAIL < tail.high else verdict,
         ConfidenceInterval(float(middle), float(low), float(high)),
-        published,
-        percentile=ConfidenceInterval(100 * share.value, 100 * share.low, 100 * share.high),
-        decided=not tail.low < _TAIL < tail.high,
+        ConfidenceInterval(100 * share.value, 100 * share.low, 100 * share.high),
     )
 
 
-def _judge_relation(claim, limit, estimate):
-    holds = _HOLDS[claim.relation]
-    at_ends = holds(estimate.low, limit), holds(estimate.high, limit)
-    verdict = "underdetermined"
-    if all(at_ends) or not any(at_ends):
-        verdict = "reproduced" if all(at_ends) else "contradicted"
-    # An interval of 95 % that comes this near may hold the limit for another seed.
-    near = estimate.value - limit
-    room = estimate.value - estimate.low if near > 0 else estimate.high - estimate.value
-    return Judgment(
-        claim, verdict, estimate, limit, decided=bool(room == 0 or abs(near) > 2 * room)
+def _relation(claim, evidence, published, limit):
+    estimate = _estimate(claim, evidence)
+    holds = [_HOLDS[claim.relation](end, published) for end in _ends(estimate)]
+    return _decided(holds), estimate, None
+
+
+def _size(claim, evidence, published, factor):
+    estimate = _estimate(claim, evidence)
+    low, high = sorted((published / factor, published * factor))
+    ends = _ends(estimate)
+    if ends[0] < low < ends[1] or ends[0] < high < ends[1]:
+        return "undecided", estimate, None
+    return _decided([low <= end <= high for end in ends]), estimate, None
+
+
+def _decided(holds):
+    if all(holds) or not any(holds):
+        return "reproduced" if all(holds) else "contradicted"
+    return "undecided"
+
+
+def _estimate(claim, evidence):
+    if isinstance(evidence, (Sweep, Draws)):
+        raise _wrong(claim, "a ConfidenceInterval or a float", evidence)
+    if not isinstance(evidence, ConfidenceInterval):
+        evidence = ConfidenceInterval(*[_checks.one_number(_name(claim), evidence)] * 3)
+    if not evidence.low <= evidence.value <= evidence.high:  # as it is not if one is NaN
+        raise _wrong(claim, "a ConfidenceInterval whose value lies between its ends", evidence)
+    return evidence
+
+
+def _ends(estimate):
+    """Return the ends of an interval about the estimate that other seeds would hardly leave."""
+    middle = estimate.value
+    return (
+        middle - _WIDER * (middle - estimate.low),
+        middle + _WIDER * (estimate.high - middle),
     )
 
 
-def _judge_readings(claim, readings):
-    if not isinstance(readings.by_name, dict) or len(readings.by_name) < 2:
-        raise _wrong(claim, "two Readings or more, in a dict by their names", readings)
-    found = {name: judge(claim, one) for name, one in readings.by_name.items()}
-    order = ("reproduced", "typical", "underdetermined", "atypical", "contradicted")
-    nearest = min(
-        found, key=lambda name: (order.index(found[name].verdict), _distance(found[name]))
-    )
-    verdicts = {one.verdict for one in found.values()}
-    best = found[nearest]
-    return Judgment(
-        claim,
-        best.verdict if len(verdicts) == 1 else "underdetermined",
-        best.ours,
-        best.published,
-        best.percentile,
-        nearest,
-        all(one.decided for one in found.values()),
-    )
+def _distance(point):
+    """Order comparisons, those first that are kinder to the document."""
+    word = {"holds": "reproduced", "fails": "contradicted"}.get(point.verdict, point.verdict)
+    ours = point.ours.value if isinstance(point.ours, ConfidenceInterval) else point.ours
+    return _BEST_FIRST.index(word), float(np.max(np.abs(np.subtract(ours, point.published))))
 
 
-def _distance(judgment):
-    ours = judgment.ours.value if isinstance(judgment.ours, ConfidenceInterval) else judgment.ours
-    return float(np.max(np.abs(np.subtract(ours, judgment.published))))
-
-
-def _published(claim, evidence):
+def _published(claim, evidence, limit):
+    if claim.form == "relation" and claim.limit is not None:
+        return limit
     brought = getattr(evidence, "published", None)
     if (claim.published is None) == (brought is None):
         times = "twice" if brought is not None else "not at all"
@@ -240,6 +359,4 @@ def _name(claim):
 
 
 def _wrong(claim, wanted, evidence):
-    return ValueError(
-        f"{_name(claim)}, a {claim.kind} claim, must be {wanted}, got {short(evidence)}"
-    )
+    return ValueError(f"{_name(claim)}, a {claim.form}, must be {wanted}, got {short(evidence)}")

@@ -50,7 +50,7 @@ from dopplerlib.model.ranging_noise import (
 )  # fmt: skip
 from dopplerlib.model.twin import planar_twin
 from dopplerlib.replication.claims import Claim
-from dopplerlib.replication.readings import Draws
+from dopplerlib.replication.evidence import Draws
 from dopplerlib.replication.verdicts import judge
 from dopplerlib.signal.impairments import add_iq_imbalance, image_rejection, quantize
 from dopplerlib.signal.synthesis import iq_from_geometry, iq_from_velocity, tone, velocity_profile
@@ -200,7 +200,7 @@ ITERATED = {
     "judge": lambda of: [judge(CLAIM, draws).verdict for draws in [Draws(of(range(50)), 7.0)] * 2],
     "Draws": lambda of: Draws(of([1.0, 2.0])),
 }  # fmt: skip
-CLAIM = Claim("a", "w", "s.", "random", "typical", "p", "c", "t")
+CLAIM = Claim("a", "w", "s.", "draw", "typical", "p", "c", "t")
 
 
 @pytest.mark.parametrize("of", [iter, lambda values: (one for one in values)])

@@ -3,14 +3,17 @@
 import ast
 import json
 from dataclasses import replace
+from datetime import date
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
-from dopplerlib.replication.readings import Draws, Readings
-from dopplerlib.replication.verdicts import judge, judge_all
+from dopplerlib.replication.choices import Choice
+from dopplerlib.replication.evidence import Draws, Readings, Sweep
+from dopplerlib.replication.judgments import read_judgments
+from dopplerlib.replication.verdicts import judge
 
 ROOT = Path(__file__).resolve().parents[2]
 FAR = 1e12  # no quantity of any document comes near, in any unit
@@ -41,55 +44,94 @@ def check_tests(claims):
     assert [id for id, (path, _, name) in named.items() if name not in functions(path)] == []
 
 
-def check_verdicts(claims, evidence):
-    """The verdicts on record are those of this evidence, and another seed would hardly differ."""
-    judgments = judge_all(claims, evidence)
+def check_verdicts(document, judgments):
+    """The verdicts on record, and the numbers that the book shows, are those of this evidence."""
     found = {one.claim.id: one.verdict for one in judgments}
-    assert found == {one.claim.id: one.claim.verdict for one in judgments}
-    assert [one.claim.id for one in judgments if not one.decided] == []
+    assert found == {claim.id: claim.verdict for claim in document.claims}
+    shown = {one.claim.id: one for one in read_judgments(document.name)}
+    assert list(shown) == list(found)
+    for one in judgments:
+        there = shown[one.claim.id]
+        assert (there.verdict, len(there.points)) == (one.verdict, len(one.points)), one.claim.id
+        for ours, theirs in zip(one.points, there.points, strict=True):
+            same = (ours.at, ours.verdict, ours.beyond) == (
+                theirs.at,
+                theirs.verdict,
+                theirs.beyond,
+            )
+            assert same, (one.claim.id, ours.at)
+            for name in ("ours", "published", "percentile"):
+                values = [_values(getattr(point, name)) for point in (ours, theirs)]
+                np.testing.assert_allclose(*values, rtol=1e-6, atol=1e-12, err_msg=one.claim.id)
 
 
-def check_flips(claims, evidence):
+def check_flips(document, evidence):
     """A verdict follows from the number: with ours it is good, and just beyond ours it is bad."""
-    for claim in claims:
-        for one in _readings(evidence[claim.id]):
+    for claim in document.claims:
+        for one in _pieces(evidence[claim.id]):
             for right in _right(claim, one):
-                assert _verdict(claim, one, right) in ("reproduced", "typical"), claim.id
+                assert _verdict(document, claim, one, right) in ("reproduced", "typical"), claim.id
             for wrong in _wrong(claim, one):
-                assert _verdict(claim, one, wrong) in ("contradicted", "atypical"), claim.id
+                assert _verdict(document, claim, one, wrong) in _BAD, claim.id
             if isinstance(one, ConfidenceInterval) and one.low < one.value < one.high:
-                assert _verdict(claim, one, one.value) == "underdetermined", claim.id
+                at_the_limit = one.value * (FACTOR if claim.form == "size" else 1)
+                assert _verdict(document, claim, one, at_the_limit) == "undecided", claim.id
 
 
-def _verdict(claim, evidence, published):
+_BAD = ("contradicted", "atypical", "undecided")
+FACTOR = 2.0
+
+
+def _verdict(document, claim, evidence, published):
+    """Judge one piece of evidence against one number, without what the claim leaves open."""
     evidence = Draws(evidence.values) if isinstance(evidence, Draws) else evidence
-    return judge(replace(claim, published=published), evidence).verdict
+    bare = replace(
+        claim, published=published, choices=(), limit=None, kind="result", verdict="reproduced"
+    )
+    if claim.form == "size":
+        bare = replace(bare, limit="factor")
+    factor = Choice("factor", "ours", "factor", (FACTOR,), "of this test", date(2026, 11, 29))
+    return judge(bare, evidence, [factor]).verdict
 
 
-def _readings(evidence):
-    return evidence.by_name.values() if isinstance(evidence, Readings) else [evidence]
+def _pieces(evidence):
+    if isinstance(evidence, Readings):
+        return evidence.by_name.values()
+    return evidence.points.values() if isinstance(evidence, Sweep) else [evidence]
+
+
+def _values(value):
+    if value is None:
+        return []
+    if isinstance(value, ConfidenceInterval):
+        return [value.value, value.low, value.high]
+    return np.asarray(value, float)
 
 
 def _right(claim, evidence):
     """Return what a document that agrees with us would have printed."""
-    if claim.kind == "relation":
-        low, high = _ends(evidence)
+    if claim.form == "size":
+        return [_ends(evidence)[2]]
+    if claim.form == "relation":
+        low, high, _ = _ends(evidence)
         return [high + _step(claim, high) if "<" in claim.relation else low - _step(claim, low)]
-    if claim.kind == "random":
+    if claim.form == "draw":
         return [float(np.median(evidence.values))]
     return [np.asarray(evidence, float).tolist()]
 
 
 def _wrong(claim, evidence):
     """Return numbers that are off by little more than they may be, each entry by itself."""
-    if claim.kind == "relation":
-        low, high = _ends(evidence)
+    if claim.form == "size":
+        return [1.01 * FACTOR * _ends(evidence)[1], FAR]
+    if claim.form == "relation":
+        low, high, _ = _ends(evidence)
         return (
             [low - _step(claim, low), -FAR]
             if "<" in claim.relation
             else [high + _step(claim, high), FAR]
         )
-    if claim.kind == "random":
+    if claim.form == "draw":
         low, high = np.min(evidence.values), np.max(evidence.values)
         return [low - _step(claim, low), high + _step(claim, high), -FAR, FAR]
     ours = np.asarray(evidence, float)
@@ -108,6 +150,8 @@ def _step(claim, value):
 
 
 def _ends(evidence):
-    if isinstance(evidence, ConfidenceInterval):
-        return evidence.low, evidence.high
-    return float(evidence), float(evidence)
+    """Return the ends of an interval that other seeds would hardly leave, and its middle."""
+    if not isinstance(evidence, ConfidenceInterval):
+        return (float(evidence),) * 3
+    middle = evidence.value
+    return 2 * evidence.low - middle, 2 * evidence.high - middle, middle

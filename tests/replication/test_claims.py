@@ -9,7 +9,7 @@ GOOD = """
 id = "nis"
 where = "Fig 6"
 statement = "NIS is near six"
-kind = "random"
+form = "draw"
 published = 5.82
 rounding = 0.005
 verdict = "typical"
@@ -38,9 +38,9 @@ def test_a_claim_has_what_the_file_says(tmp_path):
         (GOOD, GOOD + GOOD, "the id of a claim must be unique, got 'nis' twice"),
         ('where = "Fig 6"', "", "claim 'nis' must have where, got only"),
         ("unit", "unt", "claim 'nis' must have nothing but id, .*, got unt"),
-        ('"random"', '"luck"', "kind of claim 'nis' must be one of .*, got 'luck'"),
+        ('"draw"', '"luck"', "form of claim 'nis' must be one of .*, got 'luck'"),
         ('"typical"', '"fine"', "verdict of claim 'nis' must be one of .*, got 'fine'"),
-        ('"random"', '"relation"', "relation of claim 'nis' must be one of .*, got None"),
+        ('"draw"', '"relation"', "relation of claim 'nis' must be one of .*, got None"),
         (
             '"typical"',
             '"contradicted"',

@@ -5,7 +5,7 @@ import numpy as np
 from ..._hints import checked
 from ...evaluation.intervals import mean_interval, proportion_interval, quantile_interval
 from ...model.polar_radar import polar_radar_jacobian
-from ...replication.readings import Readings
+from ...replication.evidence import Readings
 from ...signal import fsk, waveforms
 from . import claim_regions, lag_prediction, linear_filter, processing, processing_study, signals
 from .crossing import crossing_paths, track_crossing

@@ -6,7 +6,7 @@ from ..._hints import Runs, checked
 from ...evaluation.consistency import chi2_interval
 from ...evaluation.intervals import proportion_interval, quantile_interval
 from ...model.doppler import doppler_jacobian
-from ...replication.readings import Draws, Readings
+from ...replication.evidence import Draws, Readings
 from .. import mittermaier2016
 from .diagnosis import final_bound
 from .published import reported

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._hints import Runs, checked
 from ...evaluation.intervals import ConfidenceInterval, mean_interval, quantile_interval
-from ...replication.readings import Readings
+from ...replication.evidence import Readings
 from .algorithms import run_algorithms
 from .fusion_study import cell_measures, failure_limit, saved_failures
 from .published import reported

@@ -5,7 +5,7 @@ import numpy as np
 from ....estimation.linear_kalman import kf
 from ....estimation.radial_velocity import radial_velocity_terms
 from ....model.range_rate import range_rate, range_rate_jacobian
-from ....replication.readings import Readings
+from ....replication.evidence import Readings
 from ..cartesian_tracker import range_and_angle_jacobian
 from ..expected_error import error_area, one_scan_bound
 from ..noise import noise_std, resolutions, snr

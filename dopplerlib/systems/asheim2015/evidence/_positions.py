@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ....replication.readings import Draws, Readings
+from ....replication.evidence import Draws, Readings
 from ..measures import position_errors, usable_range, usable_ratio
 from ..position_tracker import clipped_bilateration
 from ..published import reported

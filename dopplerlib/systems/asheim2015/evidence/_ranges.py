@@ -6,7 +6,7 @@ from ....estimation import gaussian, recursion
 from ....estimation.linear_kalman import kf
 from ....estimation.radial_velocity import radial_velocity_update
 from ....model.motion import ncv_transition
-from ....replication.readings import Draws, Readings
+from ....replication.evidence import Draws, Readings
 from ..measures import departure_times, rmse_ratio
 from ..published import reported
 from ..range_tracker import track_ranges

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ....evaluation.intervals import proportion_interval
-from ....replication.readings import Draws, Readings
+from ....replication.evidence import Draws, Readings
 from ..measures import position_errors
 from ..position_tracker import clipped_bilateration
 from ..published import reported

@@ -5,7 +5,7 @@ import numpy as np
 from ...._hints import checked
 from ....chain.simulation import simulate_baseband
 from ....evaluation.intervals import quantile_interval
-from ....replication.readings import Readings
+from ....replication.evidence import Readings
 from ....signal.laws import integrated_snr_for_std
 from ..chain_bounds import position_bound, position_bound_iq, record_length
 from ..chain_errors import track_errors

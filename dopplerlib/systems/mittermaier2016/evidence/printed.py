@@ -5,7 +5,7 @@ import numpy as np
 from ....evaluation.bounds import crlb
 from ....evaluation.consistency import chi2_interval
 from ....model.doppler import doppler_jacobian, doppler_shift
-from ....replication.readings import Readings
+from ....replication.evidence import Readings
 from ..published import reported
 from ..start import samples_needed, start_misfit
 

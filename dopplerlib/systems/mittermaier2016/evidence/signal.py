@@ -4,7 +4,7 @@ import numpy as np
 
 from ...._hints import checked
 from ....evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
-from ....replication.readings import Readings
+from ....replication.evidence import Readings
 from ....signal.frequency import ml_frequency
 from ....signal.interpolation import peak_bin
 from ....signal.laws import (

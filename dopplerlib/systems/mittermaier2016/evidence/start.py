@@ -9,7 +9,7 @@ from ....evaluation.intervals import (
     proportion_interval,
     quantile_interval,
 )
-from ....replication.readings import Draws, Readings
+from ....replication.evidence import Draws, Readings
 from ..error_maps import error_map, error_map_bound, fraction_above
 from ..published import reported
 from ..readings.maps import map_readings

@@ -19,7 +19,7 @@ from ....model.doppler import doppler_jacobian, doppler_shift
 from ....model.motion import constant_velocity
 from ....model.radar_array import RadarArray
 from ....model.simulation import simulate
-from ....replication.readings import Draws, Readings
+from ....replication.evidence import Draws, Readings
 from ..example import run_example
 from ..published import reported
 from ..start import table2_starts

@@ -1,8 +1,9 @@
-"""Judge the claims of every document with several seeds: no verdict may depend on the draw.
+"""Judge the claims of every document, and write the judgments that the book shows.
 
-Prints how many claims of each document got which verdict, for each seed, and every claim whose
-verdict is not the one on record. Progress goes to standard error. The exit code is
-1 if there is one.
+results/NAME.verdicts.json appears when all claims of a document are judged; the verdict that its
+file of claims states is not looked at. With --seeds nothing is written: the claims are judged with
+each of these seeds, since no verdict may depend on the draw, and the exit code is 1 if one differs
+from the one on record. Progress goes to standard error.
 """
 
 import sys
@@ -11,10 +12,15 @@ from importlib import import_module
 
 import numpy as np
 
+from dopplerlib._data import results
+from dopplerlib._files import write_text
 from dopplerlib.replication.claims import VERDICTS
 from dopplerlib.replication.documents import documents, read_document
+from dopplerlib.replication.judgments import judgments_text
 from dopplerlib.replication.verdicts import judge_all
 from tools.command import parser, start
+
+SEED = 2016  # of the judgments that the book shows; any other would do, see --seeds
 
 
 def evidence_of(document, seed):
@@ -23,10 +29,28 @@ def evidence_of(document, seed):
     return module.evidence(rng=np.random.default_rng(seed))
 
 
+def judgments(name, seed):
+    """Return the judgments on every claim."""
+    document = read_document(name)
+    return judge_all(document.claims, evidence_of(name, seed), document.choices)
+
+
 def verdicts(document, seed):
     """Return the verdict on every claim, by its id."""
-    judgments = judge_all(read_document(document).claims, evidence_of(document, seed))
-    return {one.claim.id: one.verdict for one in judgments if not one.claim.surrogate}
+    found = judgments(document, seed)
+    return {one.claim.id: one.verdict for one in found if not one.claim.surrogate}
+
+
+def written(name):
+    """Judge a document, write its judgments, and return lines on verdicts that differ."""
+    print(f"claims of {name} ...", file=sys.stderr, flush=True)
+    found = judgments(name, SEED)
+    write_text(results(f"{name}.verdicts.json"), judgments_text(found, SEED))
+    return [
+        f"{name}: {one.claim.id} is {one.verdict}, on record {one.claim.verdict}"
+        for one in found
+        if one.verdict != one.claim.verdict
+    ]
 
 
 def on_record(document):
@@ -75,11 +99,15 @@ def differences(found, record):
 
 
 def main(argv=None):
-    """Judge, print, and return the exit code."""
+    """Judge, write or compare, print, and return the exit code."""
     options = parser(__doc__)
     options.add_argument("documents", nargs="*", help="all that have claims if none is named")
-    options.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
+    options.add_argument("--seeds", type=int, nargs="+", help="compare only, with each of these")
     chosen = options.parse_args(argv)
+    if not chosen.seeds:
+        different = [line for name in chosen.documents or documents() for line in written(name)]
+        print(*different, sep="\n", end="\n" * bool(different))
+        return 1 if different else 0
     found = verdicts_by_seed(chosen.documents or documents(), chosen.seeds)
     print(*table(found), sep="\n")
     differ = differences(found, {document: on_record(document) for document in found})
