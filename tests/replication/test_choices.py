@@ -64,6 +64,8 @@ def test_a_wrong_file_is_refused(tmp_path, old, new, message):
 @pytest.mark.parametrize("name", documents())
 def test_every_choice_of_a_document_enters_one_of_its_claims(name):
     document = read_document(name)
+    if not all(claim.keys for claim in document.claims):
+        pytest.skip("its claims do not say yet where they are found")
     used = {one for claim in document.claims for one in (*claim.choices, claim.limit)}
     shared = {one.id for one in shared_choices()}
     assert {one.id for one in document.choices} - shared <= used
