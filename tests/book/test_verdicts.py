@@ -1,0 +1,74 @@
+"""One voice: what a chapter says of a claim is printed from the claims, with the judged number."""
+
+import importlib.util
+import re
+
+import nbformat
+import pytest
+
+from dopplerlib.replication._cells import ours
+from dopplerlib.replication.documents import documents, read_document
+from dopplerlib.replication.judgments import read_judgments
+from tools.notebooks import ROOT, chapters
+
+BOOK = {path.stem: nbformat.read(path, as_version=4).cells for path in chapters()}
+PAGES = sorted({(name, one.page) for name in documents() for one in read_document(name).claims})
+# A page that says by which rules a verdict is made has to name the verdicts.
+RULES = {"scorecard_mittermaier2016": "sec-verdict-rules"}
+TYPED = re.compile(r"\b(reproduced|contradicted|atypical|typical|underdetermined|undecided)\b")
+ROLE = re.compile(r"\{verdict\}`([^`]*)`")
+
+
+def extension():
+    """Return the Sphinx extension, which is no part of the library."""
+    spec = importlib.util.spec_from_file_location("verdicts", ROOT / "book/_ext/verdicts.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def judged(page):
+    """Return the cell that shows the judgments of a page, or skip."""
+    name = "sentences" if page.startswith("scorecard_") else "judged"
+    found = [cell for cell in BOOK[page] if cell.get("id") == name]
+    if not found:
+        pytest.skip("no cell with judgments yet")
+    return found[0]
+
+
+@pytest.mark.parametrize(("document", "page"), PAGES)
+def test_a_page_shows_the_judged_numbers_of_its_claims(document, page):
+    cell = judged(page)
+    shown = "".join(output["data"]["text/plain"] for output in cell.outputs if "data" in output)
+    for one in read_judgments(document):
+        if one.claim.page == page:
+            assert f"{one.claim.id}: {one.verdict}\n" in shown
+            assert f"ours {ours(one)}" in shown, one.claim.id
+
+
+@pytest.mark.parametrize("page", BOOK)
+def test_no_verdict_is_typed(page):
+    judged(page)
+    for cell in BOOK[page]:
+        source = "".join(cell.source)
+        if cell.cell_type == "markdown" and f"({RULES.get(page)})=" not in source:
+            prose = re.sub(r"`[^`]*`|\{[^}]*\}`[^`]*`", "", source)
+            assert TYPED.findall(prose) == [], (page, cell.id)
+
+
+@pytest.mark.parametrize("page", BOOK)
+def test_every_verdict_in_the_prose_is_one_of_a_claim(page):
+    word = extension().word
+    for cell in BOOK[page]:
+        if cell.cell_type == "markdown":
+            for text in ROLE.findall("".join(cell.source)):
+                word(text)  # raises if there is none
+
+
+def test_the_role_gives_the_verdict_on_record():
+    name = documents()[0]
+    claim = read_document(name).claims[0]
+    assert extension().word(f"{name}:{claim.id}") == (name, claim.id, claim.verdict)
+    for text in ("nothing", "nobody:claim", f"{name}:no-such-claim"):
+        with pytest.raises(ValueError, match="must"):
+            extension().word(text)
