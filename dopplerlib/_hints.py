@@ -132,6 +132,8 @@ Count = Annotated[int, _checks.whole_number]  # 1, 2, ...
 Index = Annotated[int, partial(_checks.whole_number, least=0)]
 Runs = Annotated[int, up_to(10**6)]
 Positive = Annotated[float, _checks.moderate_number]
+AboveZero = Annotated[float, _checks.positive_number]  # of any size
+Number = Annotated[float, partial(_checks.one_number, check=_checks.real)]  # NaN too
 Real = Annotated[float, partial(_checks.one_number, check=_checks.moderate)]
 Probability = Annotated[float, _checks.probability]
 # Arrays of such numbers: an array_like for the caller, an array for a type checker.

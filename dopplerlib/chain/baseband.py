@@ -1,8 +1,11 @@
 """Baseband samples of an array, after low-pass filter and decimation."""
 
+from typing import Annotated
+
 import numpy as np
 
 from .. import _checks
+from .._hints import Booleans, Positive, Real, checked
 from .._records import record
 from .._typing import ArrayLike, BoolArray, ComplexArray
 from ..model.radar_array import RadarArray
@@ -14,6 +17,7 @@ from ..signal.validity import known_samples, valid_samples
 _SAME_WAVELENGTH = 1e-3  # relative: a difference of that scales all speeds as much
 
 
+@checked
 @record
 class Baseband:
     """Baseband samples of an array, with the validity of each.
@@ -35,13 +39,8 @@ class Baseband:
         Variance of white noise after the low-pass over what its density in the passband amounts
         to at the new rate. Below 1: the skirts of the filter lose a little of it.
     valid : ndarray of bool, shape (..., N, n), optional
-        Which samples are measurements, as decided before the low-pass: see `valid_samples` and
-        `lowpass_decimate`. If None, the samples in `x` tell it.
-
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described, or `x` is not finite where `valid` is True.
+        Which samples are measurements, and finite, as decided before the low-pass: see
+        `valid_samples` and `lowpass_decimate`. If None, the samples in `x` tell it.
 
     Examples
     --------
@@ -51,27 +50,18 @@ class Baseband:
     1.0
     """
 
-    x: np.ndarray
-    fs: float
+    x: Annotated[ComplexArray, _checks.numbers]
+    fs: Positive
     array: RadarArray
-    delay: float = 0.0
-    first: float = 0.0
-    noise_gain: float = 1.0
-    valid: np.ndarray | None = None
+    delay: Real = 0.0
+    first: Real = 0.0
+    noise_gain: Positive = 1.0
+    valid: Booleans | None = None
 
     def __post_init__(self):
         """Check the fields."""
-        _checks.instance("array", self.array, RadarArray)
-        for name, value in (
-            ("x", _checks.numbers("x", self.x, (len(self.array), None))),
-            ("fs", _checks.moderate_number("fs", self.fs)),
-            ("delay", _checks.one_number("delay", self.delay, _checks.moderate)),
-            ("first", _checks.one_number("first", self.first, _checks.moderate)),
-            ("noise_gain", _checks.moderate_number("noise_gain", self.noise_gain)),
-        ):
-            object.__setattr__(self, name, value)
+        _checks.check_shape("x", self.x, (len(self.array), None))
         if self.valid is not None:
-            object.__setattr__(self, "valid", _checks.booleans("valid", self.valid))
             known_samples("x", self.x, self.valid, (None,))
 
     @classmethod
@@ -135,6 +125,7 @@ class Baseband:
         return cls(y[..., filling:], fs_out, array, delay, filling / fs_out, gain, kept)
 
     @classmethod
+    @checked
     def from_recording(
         cls, recording: Recording, array: RadarArray, *, factor: int = 1, taps: int | None = None
     ) -> "Baseband":
@@ -168,8 +159,6 @@ class Baseband:
         >>> Baseband.from_recording(recording, array, factor=5).x.shape
         (2, 80)
         """
-        _checks.instance("recording", recording, Recording)
-        _checks.instance("array", array, RadarArray)
         if len(recording.x) != len(array):
             raise ValueError(
                 f"array must have the {len(recording.x)} sensors of recording, got {len(array)}"

@@ -2,11 +2,12 @@
 
 import warnings
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from .. import _checks
+from .._hints import Positive, Real, checked
 from .._records import record
 from .._typing import ArrayLike, BoolArray, FloatArray, IntArray
 from ..estimation.maximum_likelihood import IMPLAUSIBLE, ImplausibleStart
@@ -106,12 +107,9 @@ class IqTrack:
             elif name not in ("shift_std", "score"):
                 _checks.measured(name, values, ())
             object.__setattr__(self, name, values)
+        walk = _checks.moderate_number("velocity_random_walk", self.velocity_random_walk)
         object.__setattr__(self, "used", used)
-        object.__setattr__(
-            self,
-            "velocity_random_walk",
-            _checks.moderate_number("velocity_random_walk", self.velocity_random_walk),
-        )
+        object.__setattr__(self, "velocity_random_walk", walk)
 
     @property
     @_checks.quiet
@@ -131,7 +129,8 @@ class IqTrack:
         """
         return _of_each(self.nis, np.argmin(self.score[..., -1], axis=-1))
 
-    def samples_at(self, time: float) -> int:
+    @checked
+    def samples_at(self, time: Real) -> int:
         """Return the number of filtered samples that are available at a time.
 
         Parameters
@@ -148,7 +147,6 @@ class IqTrack:
         ValueError
             If `time` is before the start is known.
         """
-        time = _checks.one_number("time", time, _checks.moderate)
         k = int(np.sum(self.available_at <= time + 1e-9)) - self.used
         if k < 0:
             raise ValueError(
@@ -156,8 +154,9 @@ class IqTrack:
             )
         return k
 
+    @checked
     @_checks.quiet
-    def at(self, time: float, carry: bool = True) -> tuple[FloatArray, FloatArray, IntArray]:
+    def at(self, time: Real, carry: bool = True) -> tuple[FloatArray, FloatArray, IntArray]:
         """Return state and covariance at a time, from the samples available by then.
 
         Parameters
@@ -183,22 +182,36 @@ class IqTrack:
             If `time` is before the start is known.
         """
         k = self.samples_at(time)
-        carry = _checks.one_boolean("carry", carry)
         chosen = np.argmin(self.score[..., k if carry else 0], axis=-1)
         x, P = _of_each(self.x[..., k, :], chosen), _of_each(self.P[..., k, :, :], chosen)
-        ahead = float(time) - self.time[self.used + k - 1]
+        ahead = time - self.time[self.used + k - 1]
         if ahead > 1e-9:
             F, Q = constant_velocity(ahead, self.velocity_random_walk / np.sqrt(ahead))
             x, P = x @ F.T, F @ P @ F.T + Q
         return x, P, chosen
 
 
+def _bounds(name, box):
+    """Return the lower and upper bounds of a position or a state, or raise."""
+    bounds = tuple(_checks.iterable(name, box, "a pair (lower, upper)"))
+    if len(bounds) != 2:
+        raise ValueError(f"{name} must be a pair (lower, upper), got {len(bounds)} bounds")
+    lower, upper = (_checks.moderate(name, bound) for bound in bounds)
+    if lower.shape != upper.shape or lower.shape not in ((3,), (6,)):
+        got = f"{lower.shape}, {upper.shape}"
+        raise ValueError(f"{name} must be a pair of arrays of shape (3,) or (6,), got {got}")
+    if (lower > upper).any():
+        raise ValueError(f"{name} must not be empty, got {lower.tolist()} to {upper.tolist()}")
+    return lower, upper
+
+
+@checked
 def track_iq(
     iq: Baseband,
-    box: tuple[ArrayLike, ArrayLike],
+    box: Annotated[tuple[ArrayLike, ArrayLike], _bounds],
     *,
-    speed_limit: float,
-    velocity_random_walk: float,
+    speed_limit: Positive,
+    velocity_random_walk: Positive,
     window: float,
     start: float,
     hop: float | None = None,
@@ -206,8 +219,8 @@ def track_iq(
     dc_until: float | None = None,
     balance: bool = True,
     estimator: Callable[..., Any] = ml_frequency,
-    variance_inflation: float = 1.0,
-    least_snr: float = 20.0,
+    variance_inflation: Positive = 1.0,
+    least_snr: Positive = 20.0,
     search: Literal["parts", "whole"] = "parts",
 ) -> IqTrack:
     """Detect and track a target in the IQ samples of an array.
@@ -302,23 +315,22 @@ def track_iq(
     >>> bool(found.plausible), found.at(1.999)[0].round(1).tolist()
     (True, [3.5, 3.1, 1.0, 1.0, 0.3, 0.0])
     """
-    _checks.instance("iq", iq, Baseband)
-    variance_inflation = _checks.moderate_number("variance_inflation", variance_inflation)
-    velocity_random_walk = _checks.moderate_number("velocity_random_walk", velocity_random_walk)
-    least_snr = _checks.moderate_number("least_snr", least_snr)
-    top = _checks.moderate_number("speed_limit", speed_limit) * iq.array.doppler_per_speed
+    top = speed_limit * iq.array.doppler_per_speed
     if top > iq.fs / 2:
         raise ValueError(
             f"speed_limit must be at most {iq.fs / 2 / iq.array.doppler_per_speed:g} m/s, of which "
             f"half the sampling rate is the Doppler shift, got {speed_limit}"
         )
-    lower, upper = _box(box, speed_limit)
+    lower, upper = map(np.asarray, box)  # arrays they are: a type checker does not know
+    if len(lower) == 3:
+        v = np.where(lower < upper, speed_limit, 0.0)
+        lower, upper = np.concatenate([lower, -v]), np.concatenate([upper, v])
     x, valid = iq.samples()
     n = _length("window", window, iq)
     step = n if hop is None else max(1, _length("hop", hop, iq))
-    if _checks.one_boolean("remove_dc", remove_dc):
+    if remove_dc:
         x = _without_constant(x, valid, iq, dc_until)
-    if _checks.one_boolean("balance", balance):
+    if balance:
         x = correct_iq_imbalance(x, valid)
     leading = x.shape[:-2]
     x, valid = (v.reshape(-1, *v.shape[-2:]) for v in (x, valid))
@@ -338,7 +350,7 @@ def track_iq(
         raise ValueError(
             f"start must hold windows side by side for {free.sum()} unknowns, got {start} s"
         )
-    whole = _checks.one_of("search", search, ("parts", "whole")) == "whole"
+    whole = search == "whole"
     boxes = [(lower, upper)] if whole else parts((lower, upper), iq.array)
     states, costs, weights = hypotheses(z[:, :used], std[:, :used], iq.array, T, apart, boxes)
     degrees = np.isfinite(weights).sum(axis=(1, 2)) - free.sum()
@@ -369,24 +381,6 @@ def _of_each(values, chosen):
     return np.take_along_axis(values, place, axis=chosen.ndim).squeeze(axis=chosen.ndim)
 
 
-def _box(box, speed_limit):
-    """Return the bounds of the state."""
-    bounds = tuple(_checks.iterable("box", box, "a pair (lower, upper)"))
-    if len(bounds) != 2:
-        raise ValueError(f"box must be a pair (lower, upper), got {len(bounds)} bounds")
-    lower, upper = (_checks.moderate("box", bound) for bound in bounds)
-    if lower.shape != upper.shape or lower.shape not in ((3,), (6,)):
-        raise ValueError(
-            f"box must be a pair of arrays of shape (3,) or (6,), got {lower.shape}, {upper.shape}"
-        )
-    if (lower > upper).any():
-        raise ValueError(f"box must not be empty, got {lower.tolist()} to {upper.tolist()}")
-    if len(lower) == 6:
-        return lower, upper
-    v = np.where(lower < upper, speed_limit, 0.0)
-    return np.concatenate([lower, -v]), np.concatenate([upper, v])
-
-
 def _warn_unless_plausible(costs, degrees):
     cost = np.fmin.reduce(costs, axis=1)
     wrong = np.flatnonzero(cost > IMPLAUSIBLE * np.maximum(degrees, 1))
@@ -396,7 +390,7 @@ def _warn_unless_plausible(costs, degrees):
             f"no start explains the Doppler shifts of run {i}: chi-square {cost[i]:.0f} for "
             f"{degrees[i]} degrees of freedom. Are I and Q exchanged, or sensors in another order?",
             ImplausibleStart,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from .. import _checks
+from .._hints import Index, Probability, checked
 from .._typing import ArrayLike, FloatArray
 from ..model.doppler import check_clear_of_sensors
 from ..model.motion import dwna_gain
@@ -174,9 +175,10 @@ def ekf(
     )
 
 
+@checked
 @_checks.quiet
 def gate_bounds(
-    gate: Literal["upper", "two-sided"] | None, sensors: int, gate_probability: float = 0.95
+    gate: Literal["upper", "two-sided"] | None, sensors: Index, gate_probability: Probability = 0.95
 ) -> tuple[FloatArray, FloatArray]:
     """Return the bounds of the gate on NIS for 0, 1, ..., `sensors` measurements.
 
@@ -194,12 +196,6 @@ def gate_bounds(
     lower, upper : ndarray, shape (N + 1,)
         A NIS passes if it is neither below `lower` nor above `upper`.
 
-    Raises
-    ------
-    ValueError
-        If `gate` is unknown, `sensors` is not a whole number of at most a million, or
-        `gate_probability` not between 0 and 1.
-
     Notes
     -----
     Mittermaier et al. (2016), Section 3.5: outlier detection and gating by NIS, Eq 14.
@@ -210,11 +206,8 @@ def gate_bounds(
     >>> round(float(lower[6]), 3), round(float(upper[6]), 3)
     (1.237, 14.449)
     """
-    _checks.one_of("gate", gate, (None, "upper", "two-sided"))
-    sensors = _checks.whole_number("sensors", sensors, least=0)
     if sensors > 10**6:  # 8 MB
         raise ValueError(f"sensors must be at most a million, got {sensors}")
-    gate_probability = _checks.probability("gate_probability", gate_probability)
     lower = np.full(sensors + 1, -np.inf)
     upper = np.full(sensors + 1, np.inf)
     if gate is not None:

@@ -3,10 +3,12 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from . import gaussian, recursion
 
 
+@checked
 @_checks.quiet
 def rts_smooth(
     x: ArrayLike, P: ArrayLike, F: ArrayLike, Q: ArrayLike
@@ -28,12 +30,6 @@ def rts_smooth(
     x : ndarray, shape (..., K, n)
     P : ndarray, shape (..., K, n, n)
         Leading axes as they came in.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite, also of what comes out, or a matrix is not a
-        covariance.
 
     Notes
     -----

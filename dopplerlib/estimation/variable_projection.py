@@ -3,11 +3,13 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from ..model.doppler import doppler_jacobian
 from ..model.radar_array import RadarArray
 
 
+@checked
 @_checks.quiet
 def velocity_given_position(
     z: ArrayLike, array: RadarArray, sigma_f: ArrayLike, p: ArrayLike, in_plane: bool = False
@@ -34,12 +36,6 @@ def velocity_given_position(
     cost : ndarray, shape (...)
         Remaining misfit: the sum of the squared residuals over their variances.
 
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong shape, is not finite or not positive where it has to be, or a
-        position is that of a sensor.
-
     Notes
     -----
     The Doppler shift is linear in the velocity, h = A(p) v, where the rows of A are the unit
@@ -55,7 +51,6 @@ def velocity_given_position(
     >>> (v.round(6) + 0.0).tolist(), bool(cost < 1e-9)
     ([-0.7, 0.0, 0.2], True)
     """
-    _checks.instance("array", array, RadarArray)
     z = _checks.finite("z", z, (len(array),))
     if z.ndim != 1:
         raise ValueError(f"z must be one sample, got an array of shape {z.shape}")

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, BoolArray, FloatArray
 from ..estimation.track import Track
 from ._innovations import chi2_tail, ljung_box, of_track, whiten
@@ -81,6 +82,7 @@ def innovation_alarms(
     return {name: np.stack(values, axis=-1) < threshold for name, values in p.items()}
 
 
+@checked
 def first_alarm(alarms: ArrayLike, looks: Iterable[int]) -> FloatArray:
     """Return the number of samples until the first alarm of each run.
 
@@ -95,11 +97,6 @@ def first_alarm(alarms: ArrayLike, looks: Iterable[int]) -> FloatArray:
     -------
     ndarray, shape (...)
         Infinite where there is none.
-
-    Raises
-    ------
-    ValueError
-        If `alarms` are not booleans, one for each of `looks`, or these do not ascend.
 
     Examples
     --------

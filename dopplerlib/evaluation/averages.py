@@ -3,10 +3,14 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import AboveZero, Count, Probability, checked
 from .._typing import ArrayLike, FloatArray
 
 
-def average_interval(dof: int, samples: float, confidence: float = 0.95) -> tuple[float, float]:
+@checked
+def average_interval(
+    dof: Count, samples: AboveZero, confidence: Probability = 0.95
+) -> tuple[float, float]:
     """Interval for the mean of chi-square values with a given effective sample size.
 
     Parameters
@@ -23,12 +27,6 @@ def average_interval(dof: int, samples: float, confidence: float = 0.95) -> tupl
     -------
     lower, upper : float
         Bounds of the central interval.
-
-    Raises
-    ------
-    ValueError
-        If `dof` is not a positive whole number, `samples` is not positive, or `confidence` is not
-        between 0 and 1.
 
     Notes
     -----
@@ -47,9 +45,7 @@ def average_interval(dof: int, samples: float, confidence: float = 0.95) -> tupl
     """
     from scipy.special import chdtri, gammaincinv
 
-    dof = _checks.whole_number("dof", dof)
-    samples = _checks.positive_number("samples", samples)
-    tail = (1 - _checks.probability("confidence", confidence)) / 2
+    tail = (1 - confidence) / 2
     total = dof * samples
     low, high = 2 * gammaincinv(total / 2, tail), chdtri(total, tail)  # quantiles of chi-square
     return float(low / samples), float(high / samples)

@@ -2,11 +2,13 @@
 
 from typing import Literal
 
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from ..model.information import fisher_information, inverse_information
 from ..model.radar_array import RadarArray
 
 
+@checked
 def crlb(
     x: ArrayLike,
     array: RadarArray,
@@ -44,11 +46,6 @@ def crlb(
         Covariances. Where the information is singular no unbiased estimate exists: the variance
         of every component that takes part in an unobservable direction is infinite, and its
         covariances are NaN.
-
-    Raises
-    ------
-    ValueError
-        If an argument is refused by `fisher_information`, or `free` is not six booleans.
 
     Notes
     -----

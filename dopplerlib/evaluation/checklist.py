@@ -1,12 +1,13 @@
 """Acceptance tests of a Doppler filter: eight checks against known answers."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from scipy.special import chdtr, chdtrc
 
 from .. import _checks
+from .._hints import Count, Number, checked
 from .._records import record
 from .._typing import ArrayLike, FloatArray
 from ..estimation.linear_kalman import kf
@@ -23,6 +24,7 @@ _LAGS = 5  # of the test for memory
 _SMALL = 1e-6  # shrinks noise and start until the filter is linear to as many digits
 
 
+@checked
 @record
 class Check:
     """One check of a filter and its outcome.
@@ -39,11 +41,6 @@ class Check:
     limit : float
         Bound on `value`.
 
-    Raises
-    ------
-    ValueError
-        If `kind` is unknown, `value` is no number or `limit` is not finite.
-
     Examples
     --------
     >>> Check("Jacobian equals a complex step", "exact", 1e-15, 1e-12).passed
@@ -51,15 +48,9 @@ class Check:
     """
 
     name: str
-    kind: str
-    value: float
+    kind: Literal["exact", "statistical"]
+    value: Number
     limit: float
-
-    def __post_init__(self):
-        """Check the fields."""
-        _checks.one_of("kind", self.kind, ("exact", "statistical"))
-        _checks.one_number("value", self.value, _checks.real)
-        _checks.one_number("limit", self.limit)
 
     @property
     def passed(self) -> bool:
@@ -68,6 +59,7 @@ class Check:
         return bool(good)
 
 
+@checked
 def complex_step_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     """Return the Jacobian of the Doppler shifts by the complex-step method.
 
@@ -82,11 +74,6 @@ def complex_step_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     -------
     ndarray, shape (..., N, 6)
         Exact to rounding.
-
-    Raises
-    ------
-    ValueError
-        If `x` has the wrong shape, is not finite or on a sensor, or `array` is no `RadarArray`.
 
     Notes
     -----
@@ -106,13 +93,14 @@ def complex_step_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     ).imag / _STEP  # fmt: skip
 
 
+@checked
 def filter_checklist(
     tracker: Callable[..., Any],
     jacobian: Callable[..., Any],
     scenario: Scenario,
     *,
     rng: np.random.Generator,
-    runs: int = 200,
+    runs: Count = 200,
     samples: int = 100,
     deviation: float = 0.01,
 ) -> tuple[Check, ...]:
@@ -161,13 +149,9 @@ def filter_checklist(
     >>> [check.name for check in checks if not check.passed]
     []
     """
-    s = _checks.instance("scenario", scenario, Scenario)
-    _checks.generator("rng", rng)
-    runs = _checks.whole_number("runs", runs)
     samples = _checks.whole_number("samples", samples, least=_LAGS + 1)
     deviation = _checks.one_number("deviation", deviation, _checks.deviation)
-    tracker = _checked(_checks.function("tracker", tracker))
-    _checks.function("jacobian", jacobian)
+    s, tracker = scenario, _checked(tracker)
     F, Q = constant_velocity(s.T, s.sigma_a)
     P0 = deviation**2 * np.eye(6)
     settings = P0, s.T, s.sigma_a, s.sigma_f

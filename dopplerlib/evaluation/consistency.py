@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import Count, Probability, checked
 from .._typing import ArrayLike, FloatArray
 from ..estimation import densities
 from ..estimation.imm import ImmTrack
@@ -99,7 +100,10 @@ def nis(innovation: ArrayLike, S: ArrayLike) -> FloatArray:
     return np.where(there.any(axis=-1), value, np.nan)[()]
 
 
-def chi2_interval(dof: int, runs: int = 1, confidence: float = 0.95) -> tuple[float, float]:
+@checked
+def chi2_interval(
+    dof: Count, runs: Count = 1, confidence: Probability = 0.95
+) -> tuple[float, float]:
     """Return the interval for the average NEES or NIS of a consistent filter.
 
     Parameters
@@ -116,11 +120,6 @@ def chi2_interval(dof: int, runs: int = 1, confidence: float = 0.95) -> tuple[fl
     lower, upper : float
         Bounds of the central interval.
 
-    Raises
-    ------
-    ValueError
-        If `dof` or `runs` is not a positive whole number, or `confidence` not between 0 and 1.
-
     Notes
     -----
     Mittermaier et al. (2016), Section 3.5: [1.237, 14.449] for six degrees of freedom and one
@@ -133,9 +132,7 @@ def chi2_interval(dof: int, runs: int = 1, confidence: float = 0.95) -> tuple[fl
     """
     from scipy.special import chdtri, gammaincinv  # scipy.stats takes far longer to load
 
-    dof = _checks.whole_number("dof", dof)
-    runs = _checks.whole_number("runs", runs)
-    tail = (1 - _checks.probability("confidence", confidence)) / 2
+    tail = (1 - confidence) / 2
     low, high = 2 * gammaincinv(dof * runs / 2, tail), chdtri(dof * runs, tail)
     return float(low / runs), float(high / runs)
 

@@ -3,9 +3,11 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 
 
+@checked
 def principal_axis_errors(error: ArrayLike, P: ArrayLike) -> FloatArray:
     """Return the normalized errors along the principal axes of their covariance.
 
@@ -22,11 +24,6 @@ def principal_axis_errors(error: ArrayLike, P: ArrayLike) -> FloatArray:
         From the widest axis to the narrowest; standard normal if the filter is consistent. The sum
         of their squares is NEES. Along an axis without any spread it is 0 if the error is, and
         infinite otherwise.
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit, a value is not finite, or `P` is not a covariance.
 
     Notes
     -----

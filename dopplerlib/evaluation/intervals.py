@@ -3,10 +3,12 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import Number, Probability, checked
 from .._records import record
 from .._typing import ArrayLike
 
 
+@checked
 @record
 class ConfidenceInterval:
     """A number estimated from independent runs, with its confidence interval.
@@ -14,16 +16,11 @@ class ConfidenceInterval:
     Attributes
     ----------
     value : float
-        The estimate.
+        The estimate. It may be NaN, of which `judge` makes no verdict.
     low : float
         Lower end of its confidence interval.
     high : float
         Upper end.
-
-    Raises
-    ------
-    ValueError
-        If one of them is no number. NaN is one, of which `judge` makes no verdict.
 
     Examples
     --------
@@ -31,15 +28,9 @@ class ConfidenceInterval:
     0.5
     """
 
-    value: float
-    low: float
-    high: float
-
-    def __post_init__(self):
-        """Check the fields."""
-        for name in ("value", "low", "high"):
-            number = _checks.one_number(name, getattr(self, name), _checks.real)
-            object.__setattr__(self, name, number)
+    value: Number
+    low: Number
+    high: Number
 
     @property
     def half_width(self) -> float:
@@ -53,7 +44,8 @@ class ConfidenceInterval:
         return f"{self.value:.3g} ({self.low:.3g} to {self.high:.3g})"
 
 
-def mean_interval(values: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
+@checked
+def mean_interval(values: ArrayLike, confidence: Probability = 0.95) -> ConfidenceInterval:
     """Estimate a mean from independent runs, with its confidence interval.
 
     Parameters
@@ -67,12 +59,6 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> ConfidenceInte
     -------
     ConfidenceInterval
 
-    Raises
-    ------
-    ValueError
-        If `values` is not a list of at least two finite numbers or `confidence` is not between
-        0 and 1.
-
     Notes
     -----
     Student's t interval: exact for normal values, and by the central limit theorem good for any
@@ -85,14 +71,15 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> ConfidenceInte
     """
     from scipy.special import stdtrit
 
-    values, confidence = _runs("values", values, 2), _checks.probability("confidence", confidence)
+    values = _runs("values", values, 2)
     values, size = _scaled(values)
     mean = values.mean()
     half = stdtrit(len(values) - 1, (1 + confidence) / 2) * values.std(ddof=1) / len(values) ** 0.5
     return ConfidenceInterval(*(float(end) * size for end in (mean, mean - half, mean + half)))
 
 
-def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
+@checked
+def rms_interval(errors: ArrayLike, confidence: Probability = 0.95) -> ConfidenceInterval:
     """Estimate an RMS error from independent runs, with its confidence interval.
 
     Parameters
@@ -105,11 +92,6 @@ def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> ConfidenceInter
     Returns
     -------
     ConfidenceInterval
-
-    Raises
-    ------
-    ValueError
-        See `mean_interval`.
 
     Notes
     -----
@@ -127,7 +109,8 @@ def rms_interval(errors: ArrayLike, confidence: float = 0.95) -> ConfidenceInter
     return ConfidenceInterval(*(max(end, 0.0) ** 0.5 * size for end in ends))
 
 
-def proportion_interval(hits: ArrayLike, confidence: float = 0.95) -> ConfidenceInterval:
+@checked
+def proportion_interval(hits: ArrayLike, confidence: Probability = 0.95) -> ConfidenceInterval:
     """Estimate a probability from the proportion of runs, with its confidence interval.
 
     Parameters
@@ -140,11 +123,6 @@ def proportion_interval(hits: ArrayLike, confidence: float = 0.95) -> Confidence
     Returns
     -------
     ConfidenceInterval
-
-    Raises
-    ------
-    ValueError
-        If `hits` is not a list of booleans, is empty, or `confidence` is not between 0 and 1.
 
     Notes
     -----
@@ -160,15 +138,16 @@ def proportion_interval(hits: ArrayLike, confidence: float = 0.95) -> Confidence
     hits = _checks.booleans("hits", hits)
     if hits.ndim != 1 or not len(hits):
         raise ValueError(f"hits must be booleans of shape (runs,), got shape {hits.shape}")
-    tail = (1 - _checks.probability("confidence", confidence)) / 2
+    tail = (1 - confidence) / 2
     k, n = int(hits.sum()), len(hits)
     low = betaincinv(k, n - k + 1, tail) if k else 0.0
     high = betaincinv(k + 1, n - k, 1 - tail) if k < n else 1.0
     return ConfidenceInterval(k / n, float(low), float(high))
 
 
+@checked
 def quantile_interval(
-    values: ArrayLike, q: float = 0.5, confidence: float = 0.95
+    values: ArrayLike, q: Probability = 0.5, confidence: Probability = 0.95
 ) -> ConfidenceInterval:
     """Estimate a quantile (the median by default) from independent runs, with its interval.
 
@@ -186,12 +165,6 @@ def quantile_interval(
     ConfidenceInterval
         Ends that the runs are too few for are infinite.
 
-    Raises
-    ------
-    ValueError
-        If `values` is not a list of numbers, has NaN in it, or `q` or `confidence` is not between
-        0 and 1.
-
     Notes
     -----
     Free of assumptions on the distribution: the number of runs below the quantile is binomial, so
@@ -205,8 +178,7 @@ def quantile_interval(
     from scipy.special import bdtr, bdtrc
 
     values = np.sort(_runs("values", values, 1, infinite=True))
-    q = _checks.probability("q", q)
-    tail = (1 - _checks.probability("confidence", confidence)) / 2
+    tail = (1 - confidence) / 2
     n = len(values)
     # Order statistics, counted from 1: the quantile is below the first with at most `tail`.
     first = int(np.sum(bdtr(np.arange(n), n, q) < tail))

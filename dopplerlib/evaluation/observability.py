@@ -6,6 +6,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from .. import _checks
+from .._hints import Count, Positive, checked
 from .._typing import ArrayLike, FloatArray, IntArray
 from ..estimation.maximum_likelihood import ml_initialize
 from ..model.doppler import doppler_shift
@@ -13,6 +14,7 @@ from ..model.information import SINGULAR, fisher_information, free_components
 from ..model.radar_array import RadarArray
 
 
+@checked
 def observable_rank(
     x: ArrayLike,
     array: RadarArray,
@@ -44,11 +46,6 @@ def observable_rank(
     ndarray of int, shape (...)
         Number of eigenvalues, of the information scaled to a diagonal of ones, that are not
         rounding.
-
-    Raises
-    ------
-    ValueError
-        If an argument is refused by `fisher_information`, or `free` is not six booleans.
 
     Examples
     --------
@@ -122,12 +119,13 @@ def rms_bounds(
     return *bounds, np.sqrt(np.where(reached, np.inf, square))
 
 
+@checked
 def nearest_ambiguity(
     x: ArrayLike,
     array: RadarArray,
     sigma_f: float,
-    K: int,
-    T: float,
+    K: Count,
+    T: Positive,
     box: tuple[ArrayLike, ArrayLike],
     likelihood: Literal["stationary", "constant_velocity"] = "constant_velocity",
 ) -> tuple[FloatArray, float]:
@@ -182,13 +180,9 @@ def nearest_ambiguity(
     x = _checks.moderate("x", x, (6,))
     if x.ndim != 1:
         raise ValueError(f"x must be one state of shape (6,), got shape {x.shape}")
-    K, T = _checks.whole_number("K", K), _checks.moderate_number("T", T)
     sigma_f = _checks.one_number("sigma_f", sigma_f, _checks.deviation)
     path = np.tile(x, (K, 1))
-    if (
-        _checks.one_of("likelihood", likelihood, ("stationary", "constant_velocity"))
-        == "constant_velocity"
-    ):
+    if likelihood == "constant_velocity":
         path[:, :3] += T * np.arange(K)[:, None] * path[:, 3:]
     start = ml_initialize(doppler_shift(path, array), array, sigma_f, T, box, likelihood)
     distance = np.sqrt(np.maximum(start.second_cost - start.cost, 0.0))

@@ -3,11 +3,13 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from ..model.information import inverse_information
 from ..model.range_rate import range_rate_jacobian
 
 
+@checked
 def range_crlb(p: ArrayLike, sensors: ArrayLike, sigma: ArrayLike) -> FloatArray:
     """Return the Cramér-Rao lower bound of a position from one range per radar.
 
@@ -25,12 +27,6 @@ def range_crlb(p: ArrayLike, sensors: ArrayLike, sigma: ArrayLike) -> FloatArray
     ndarray, shape (..., 2, 2)
         Covariances in m^2. Where the ranges cannot tell the position (all radars in line with
         it), the variance of each component that takes part is infinite.
-
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, a value is not finite, `sigma` is not positive, or a position is
-        that of a radar.
 
     Notes
     -----

@@ -3,9 +3,11 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 
 
+@checked
 def ring_family(x: ArrayLike, radius: float, t: ArrayLike) -> FloatArray:
     """Return states with equal Doppler shifts at every sensor of a ring.
 
@@ -22,12 +24,6 @@ def ring_family(x: ArrayLike, radius: float, t: ArrayLike) -> FloatArray:
     -------
     ndarray, shape (..., 6)
         States on the same side of the ring.
-
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong shape, is not finite or beyond 1e60, x is zero, or `t` is not
-        between the limits.
 
     Notes
     -----
@@ -57,6 +53,7 @@ def ring_family(x: ArrayLike, radius: float, t: ArrayLike) -> FloatArray:
     return np.concatenate([ahead[..., None], across, ahead_v[..., None], across_v], axis=-1)
 
 
+@checked
 def ring_family_limits(x: ArrayLike, radius: float) -> tuple[FloatArray, FloatArray]:
     """Return the limits of the parameter of `ring_family`, at which it meets the plane of the ring.
 
@@ -71,11 +68,6 @@ def ring_family_limits(x: ArrayLike, radius: float) -> tuple[FloatArray, FloatAr
     -------
     low, high : ndarray, shape (...)
         Limits of t; `high` is infinite for a target on the axis of the ring.
-
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong shape, is not finite or beyond 1e60, or x is zero.
 
     Notes
     -----
@@ -97,6 +89,7 @@ def ring_family_limits(x: ArrayLike, radius: float) -> tuple[FloatArray, FloatAr
         return np.sqrt(2 * radius**2 / larger), np.sqrt(larger / (2 * across))
 
 
+@checked
 def ring_family_direction(x: ArrayLike, radius: float) -> FloatArray:
     """Return the unobservable direction of a ring: the derivative of `ring_family` at t = 1.
 
@@ -111,11 +104,6 @@ def ring_family_direction(x: ArrayLike, radius: float) -> FloatArray:
     -------
     ndarray, shape (..., 6)
         In m and m/s; not of unit length.
-
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong shape, is not finite or beyond 1e60, or x is zero.
 
     Notes
     -----

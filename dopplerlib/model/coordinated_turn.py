@@ -3,9 +3,11 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 
 
+@checked
 @_checks.quiet
 def coordinated_turn(x: ArrayLike, T: float) -> FloatArray:
     """Return states after an interval of constant speed and turn rate.
@@ -20,11 +22,6 @@ def coordinated_turn(x: ArrayLike, T: float) -> FloatArray:
     Returns
     -------
     ndarray, shape (..., 5)
-
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, `T` is negative, or a value is beyond 1e60.
 
     Notes
     -----
@@ -45,6 +42,7 @@ def coordinated_turn(x: ArrayLike, T: float) -> FloatArray:
     return np.stack(after, axis=-1)
 
 
+@checked
 @_checks.quiet
 def coordinated_turn_jacobian(x: ArrayLike, T: float) -> FloatArray:
     """Return the Jacobian of `coordinated_turn` with respect to the state.
@@ -59,11 +57,6 @@ def coordinated_turn_jacobian(x: ArrayLike, T: float) -> FloatArray:
     Returns
     -------
     ndarray, shape (..., 5, 5)
-
-    Raises
-    ------
-    ValueError
-        See `coordinated_turn`.
 
     Notes
     -----

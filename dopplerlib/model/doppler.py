@@ -3,18 +3,20 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from ..kernels import doppler as kernel
 from .radar_array import RadarArray
 
 
+@checked
 def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
     """Return the Doppler shift at every sensor of an array.
 
     Parameters
     ----------
     x : array_like, shape (..., 6)
-        States [x, y, z, v_x, v_y, v_z] in m and m/s.
+        States [x, y, z, v_x, v_y, v_z] in m and m/s, not on a sensor.
     array : RadarArray
         The N sensors.
 
@@ -22,12 +24,6 @@ def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
     -------
     ndarray, shape (..., N)
         Doppler shifts in Hz, positive when target and sensor approach each other.
-
-    Raises
-    ------
-    ValueError
-        If `x` has another shape, is not finite, beyond 1e60 or on a sensor, or `array` is no
-        RadarArray.
 
     Notes
     -----
@@ -46,13 +42,14 @@ def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
     return shift
 
 
+@checked
 def doppler_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     """Return the Jacobian of the Doppler shifts with respect to the state.
 
     Parameters
     ----------
     x : array_like, shape (..., 6)
-        States [x, y, z, v_x, v_y, v_z] in m and m/s.
+        States [x, y, z, v_x, v_y, v_z] in m and m/s, not on a sensor.
     array : RadarArray
         The N sensors.
 
@@ -60,12 +57,6 @@ def doppler_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     -------
     ndarray, shape (..., N, 6)
         Columns 0 to 2 in Hz per m, columns 3 to 5 in Hz per m/s.
-
-    Raises
-    ------
-    ValueError
-        If `x` has another shape, is not finite, beyond 1e60 or on a sensor, or `array` is no
-        RadarArray.
 
     Notes
     -----
@@ -99,7 +90,6 @@ def check_clear_of_sensors(name: str, x: FloatArray, array: RadarArray) -> None:
 
 
 def _arguments(x, array):
-    _checks.instance("array", array, RadarArray)
     x = _checks.moderate("x", x, (6,))
     check_clear_of_sensors("x", x, array)
     return *np.moveaxis(x[..., None, :], -1, 0), *array.positions.T, array.doppler_per_speed

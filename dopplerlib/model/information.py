@@ -5,6 +5,7 @@ from typing import Literal
 import numpy as np
 
 from .. import _checks
+from .._hints import Count, Positive, checked
 from .._typing import ArrayLike, BoolArray, FloatArray
 from .doppler import doppler_jacobian
 from .radar_array import RadarArray
@@ -15,12 +16,13 @@ from .radar_array import RadarArray
 SINGULAR = 1e-13
 
 
+@checked
 def fisher_information(
     x: ArrayLike,
     array: RadarArray,
     sigma_f: ArrayLike,
-    K: int = 1,
-    T: float = 0.001,
+    K: Count = 1,
+    T: Positive = 0.001,
     likelihood: Literal["stationary", "constant_velocity"] = "stationary",
 ) -> FloatArray:
     """Return the Fisher information of K Doppler samples about the state at the first one.
@@ -28,7 +30,7 @@ def fisher_information(
     Parameters
     ----------
     x : array_like, shape (..., 6)
-        States [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s.
+        States [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s, not on a sensor.
     array : RadarArray
         The N sensors.
     sigma_f : array_like, broadcast to (K, N)
@@ -47,12 +49,6 @@ def fisher_information(
         The information in units of 1/m^2, s/m^2 and s^2/m^2. It is singular if no measurement
         changes, to first order, along some direction.
 
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong shape, is not finite and positive where it has to be, or a
-        target meets a sensor.
-
     Notes
     -----
     J = sum over k of F'^k H_k' R^-1 H_k F^k with the Jacobian H_k of Eq 7 at sample k; see
@@ -67,18 +63,11 @@ def fisher_information(
     5
     """
     x = _checks.moderate("x", x, (6,))
-    _checks.instance("array", array, RadarArray)
-    K = _checks.whole_number("K", K)
-    T = _checks.moderate_number("T", T)
-    moving = (
-        _checks.one_of("likelihood", likelihood, ("stationary", "constant_velocity"))
-        == "constant_velocity"
-    )
     weight = 1 / _checks.each_run(
         "sigma_f", _checks.deviation("sigma_f", sigma_f), (K, len(array)), ()
     )
     with np.errstate(all="ignore"):
-        if moving:
+        if likelihood == "constant_velocity":
             information = np.zeros((*x.shape, 6))
             for k in range(K):
                 F = np.eye(6)
@@ -102,6 +91,7 @@ def free_components(free: ArrayLike | None, n: int) -> BoolArray:
     return free
 
 
+@checked
 def inverse_information(
     information: ArrayLike, free: ArrayLike | None = None
 ) -> tuple[FloatArray, BoolArray]:
@@ -122,11 +112,6 @@ def inverse_information(
         the finite values that they have whatever the unobservable directions do.
     regular : ndarray of bool, shape (...)
         Whether the inverse exists, and floating-point numbers can hold it.
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit, or `information` is not finite or negative on its diagonal.
 
     Examples
     --------

@@ -3,18 +3,20 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from .doppler import check_clear_of_sensors
 from .radar_array import RadarArray
 
 
+@checked
 def iso_doppler_directions(x: ArrayLike, array: RadarArray, angles: ArrayLike) -> FloatArray:
     """Return directions from each sensor in which a target shows the same Doppler shift.
 
     Parameters
     ----------
     x : array_like, shape (..., 6)
-        States [x, y, z, v_x, v_y, v_z] in m and m/s, with a velocity other than zero.
+        States [x, y, z, v_x, v_y, v_z] in m and m/s, moving and not on a sensor.
     array : RadarArray
         The N sensors.
     angles : array_like, shape (M,)
@@ -25,12 +27,6 @@ def iso_doppler_directions(x: ArrayLike, array: RadarArray, angles: ArrayLike) -
     ndarray, shape (..., N, M, 3)
         Unit vectors. A target at ``sensor + distance * direction`` with the velocity of `x` has
         the Doppler shift of `x`, for any positive distance.
-
-    Raises
-    ------
-    ValueError
-        If `x` or `angles` has another shape or is not finite, `x` is beyond 1e60, on a sensor or at
-        rest, or `array` is no RadarArray.
 
     Notes
     -----
@@ -47,7 +43,6 @@ def iso_doppler_directions(x: ArrayLike, array: RadarArray, angles: ArrayLike) -
     >>> (directions.round(3) + 0.0).tolist()
     [[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]]
     """
-    _checks.instance("array", array, RadarArray)
     x = _checks.moderate("x", x, (6,))
     check_clear_of_sensors("x", x, array)
     angles = _checks.finite("angles", angles, (None,))

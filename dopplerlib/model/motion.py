@@ -10,13 +10,14 @@ from typing import Literal
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 
-ORDERS = ("axis", "derivative")
 # The axes that each acceleration drives.
 _AXES = {"shared": np.ones((3, 1)), "per_axis": np.eye(3)}
 
 
+@checked
 @_checks.quiet
 def constant_velocity(
     T: ArrayLike, sigma_a: float, noise: Literal["shared", "per_axis"] = "shared"
@@ -40,11 +41,6 @@ def constant_velocity(
         Transition matrix of each interval, Eq 4.
     Q : ndarray, shape (..., 6, 6)
         Covariance of the process noise of each interval.
-
-    Raises
-    ------
-    ValueError
-        If `T` or `sigma_a` is not finite and positive, or `noise` is not one of the two.
 
     Notes
     -----
@@ -81,6 +77,7 @@ def dwna_gain(
     return G, sigma_a
 
 
+@checked
 def ncv_transition(
     T: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
@@ -99,11 +96,6 @@ def ncv_transition(
     -------
     ndarray, shape (2 dim, 2 dim)
 
-    Raises
-    ------
-    ValueError
-        If `T` is negative or beyond 1e60, `dim` is not positive, or `order` is not one of the two.
-
     Notes
     -----
     Bar-Shalom, Li, Kirubarajan (2001), Sec 6.2.2. "Nearly constant" becomes true with the process
@@ -119,6 +111,7 @@ def ncv_transition(
     return _all_axes(_integrators(_interval(T), 2), dim, order)
 
 
+@checked
 def nca_transition(
     T: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
@@ -137,11 +130,6 @@ def nca_transition(
     -------
     ndarray, shape (3 dim, 3 dim)
 
-    Raises
-    ------
-    ValueError
-        If `T` is negative or beyond 1e60, `dim` is not positive, or `order` is not one of the two.
-
     Notes
     -----
     Bar-Shalom, Li, Kirubarajan (2001), Sec 6.2.3.
@@ -154,6 +142,7 @@ def nca_transition(
     return _all_axes(_integrators(_interval(T), 3), dim, order)
 
 
+@checked
 def cwna_process_noise(
     T: float, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
@@ -173,12 +162,6 @@ def cwna_process_noise(
     -------
     ndarray, shape (2 dim, 2 dim)
 
-    Raises
-    ------
-    ValueError
-        If `T` is negative or beyond 1e60, `q` or `dim` is not positive, or `order` is not one of
-        the two.
-
     Notes
     -----
     Bar-Shalom, Li, Kirubarajan (2001), Eq 6.2.2-12.
@@ -191,6 +174,7 @@ def cwna_process_noise(
     return _white_noise(T, q, 2, dim, order)
 
 
+@checked
 def cwnj_process_noise(
     T: float, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
@@ -208,12 +192,6 @@ def cwnj_process_noise(
     Returns
     -------
     ndarray, shape (3 dim, 3 dim)
-
-    Raises
-    ------
-    ValueError
-        If `T` is negative or beyond 1e60, `q` or `dim` is not positive, or `order` is not one of
-        the two.
 
     Notes
     -----
@@ -295,6 +273,6 @@ def _white_noise(T, q, n, dim, order):
 
 def _all_axes(block, dim, order):
     dim = _checks.count("dim", dim, 1000)
-    if _checks.one_of("order", order, ORDERS) == "axis":
+    if order == "axis":
         return np.kron(np.eye(dim), block)
     return np.kron(block, np.eye(dim))

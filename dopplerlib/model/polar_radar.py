@@ -3,27 +3,25 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 
 
+@checked
 def polar_radar_h(x: ArrayLike) -> FloatArray:
     """Return range, azimuth and range rate of targets for a radar at the origin.
 
     Parameters
     ----------
     x : array_like, shape (..., 4)
-        States [x, v_x, y, v_y] in m and m/s. The radar looks along +y; +x is to its right.
+        States [x, v_x, y, v_y] in m and m/s, not at the origin. The radar looks along +y;
+        +x is to its right.
 
     Returns
     -------
     ndarray, shape (..., 3)
         Range in m; azimuth in rad, zero along +y, positive to the right, in (-pi, pi]; range rate
         in m/s, positive when the target recedes.
-
-    Raises
-    ------
-    ValueError
-        If `x` has the wrong shape, is not finite or beyond 1e60, or a target is on the radar.
 
     Notes
     -----
@@ -41,22 +39,18 @@ def polar_radar_h(x: ArrayLike) -> FloatArray:
     return np.stack([r, np.arctan2(p_x, p_y), (p_x * v_x + p_y * v_y) / r], axis=-1)
 
 
+@checked
 def polar_radar_jacobian(x: ArrayLike) -> FloatArray:
     """Return the Jacobian of `polar_radar_h`.
 
     Parameters
     ----------
     x : array_like, shape (..., 4)
-        States [x, v_x, y, v_y] in m and m/s.
+        States [x, v_x, y, v_y] in m and m/s, not at the origin.
 
     Returns
     -------
     ndarray, shape (..., 3, 4)
-
-    Raises
-    ------
-    ValueError
-        If `x` has the wrong shape, is not finite or beyond 1e60, or a target is on the radar.
 
     Notes
     -----
@@ -83,6 +77,7 @@ def polar_radar_jacobian(x: ArrayLike) -> FloatArray:
     return H
 
 
+@checked
 def polar_position(z: ArrayLike) -> FloatArray:
     """Return the position at a range and an azimuth.
 
@@ -95,11 +90,6 @@ def polar_position(z: ArrayLike) -> FloatArray:
     -------
     ndarray, shape (..., 2)
         [x, y] in m.
-
-    Raises
-    ------
-    ValueError
-        If `z` has fewer than two components or is not finite.
 
     Notes
     -----

@@ -1,10 +1,11 @@
 """Positions and wavelength of an array of sensors."""
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 
 from .. import _checks
+from .._hints import Positive, Runs, checked, up_to
 from .._records import record
 from .._typing import ArrayLike
 
@@ -67,10 +68,11 @@ class RadarArray:
         return 2 / self.wavelength
 
     @classmethod
+    @checked
     def ring(
         cls,
-        n: int,
-        radius: float,
+        n: Runs,
+        radius: Positive,
         phase: float = 0.0,
         normal: Literal["x", "y", "z"] = "x",
         wavelength: float = 0.0125,
@@ -91,29 +93,26 @@ class RadarArray:
         wavelength : float
             Wavelength in m.
 
-        Raises
-        ------
-        ValueError
-            If a setting is not finite, a number other than `phase` is not positive, or `normal` is
-            not an axis.
-
         Examples
         --------
         >>> RadarArray.ring(4, 0.2).positions.round(3)[:2].tolist()
         [[0.0, 0.2, 0.0], [0.0, 0.0, 0.2]]
         """
-        n = _checks.count("n", n, 1_000_000)
-        radius = _checks.moderate_number("radius", radius)
         angle = _checks.one_number("phase", phase) + 2 * np.pi * np.arange(n) / n
-        axis = _AXES[_checks.one_of("normal", normal, tuple(_AXES))]
+        axis = _AXES[normal]
         positions = np.zeros((n, 3))
         positions[:, (axis + 1) % 3] = radius * np.cos(angle)
         positions[:, (axis + 2) % 3] = radius * np.sin(angle)
         return cls(positions, wavelength)
 
     @classmethod
+    @checked
     def linear(
-        cls, n: int, length: float, axis: Literal["x", "y", "z"] = "y", wavelength: float = 0.0125
+        cls,
+        n: Annotated[int, up_to(10**6, 2)],
+        length: Positive,
+        axis: Literal["x", "y", "z"] = "y",
+        wavelength: float = 0.0125,
     ) -> "RadarArray":
         """Return `n` sensors at equal distances on a line through the origin, its center.
 
@@ -128,20 +127,11 @@ class RadarArray:
         wavelength : float
             Wavelength in m.
 
-        Raises
-        ------
-        ValueError
-            If a setting is not finite, not positive, or `axis` is not an axis.
-
         Examples
         --------
         >>> RadarArray.linear(3, 0.4).positions.tolist()
         [[0.0, -0.2, 0.0], [0.0, 0.0, 0.0], [0.0, 0.2, 0.0]]
         """
-        n = _checks.count("n", n, 1_000_000, least=2)
-        length = _checks.moderate_number("length", length)
         positions = np.zeros((n, 3))
-        positions[:, _AXES[_checks.one_of("axis", axis, tuple(_AXES))]] = np.linspace(
-            -length / 2, length / 2, n
-        )
+        positions[:, _AXES[axis]] = np.linspace(-length / 2, length / 2, n)
         return cls(positions, wavelength)

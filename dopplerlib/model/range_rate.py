@@ -3,16 +3,18 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 
 
+@checked
 def range_rate(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     """Return the range and the range rate at every radar.
 
     Parameters
     ----------
     x : array_like, shape (..., 4)
-        States [x, y, v_x, v_y] in m and m/s.
+        States [x, y, v_x, v_y] in m and m/s, not on a radar.
     sensors : array_like, shape (N, 2)
         Positions of the radars in m.
 
@@ -20,11 +22,6 @@ def range_rate(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     -------
     ndarray, shape (..., N, 2)
         Range in m and its rate in m/s, positive when the target recedes.
-
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, a value is not finite or beyond 1e60, or a target is on a radar.
 
     Notes
     -----
@@ -41,13 +38,14 @@ def range_rate(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     return np.stack([d, np.einsum("...i,...i->...", u, v)], axis=-1)
 
 
+@checked
 def range_rate_jacobian(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     """Return the Jacobian of `range_rate` with respect to the state.
 
     Parameters
     ----------
     x : array_like, shape (..., 4)
-        States [x, y, v_x, v_y] in m and m/s.
+        States [x, y, v_x, v_y] in m and m/s, not on a radar.
     sensors : array_like, shape (N, 2)
         Positions of the radars in m.
 
@@ -55,11 +53,6 @@ def range_rate_jacobian(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     -------
     ndarray, shape (..., N, 2, 4)
         Row 0 is that of the range, row 1 that of its rate.
-
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, a value is not finite or beyond 1e60, or a target is on a radar.
 
     Notes
     -----

@@ -2,14 +2,15 @@
 
 import numpy as np
 
-from .. import _checks
+from .._hints import Count, checked
 from .._typing import FloatArray
 from .doppler import doppler_shift
 from .scenario import Scenario
 
 
+@checked
 def simulate(
-    scenario: Scenario, runs: int, *, rng: np.random.Generator
+    scenario: Scenario, runs: Count, *, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
     """Return the true path and noisy Doppler measurements of it.
 
@@ -30,12 +31,6 @@ def simulate(
     z : ndarray, shape (runs, K, N)
         Doppler measurements in Hz.
 
-    Raises
-    ------
-    ValueError
-        If `scenario` is no `Scenario`, `runs` is not a positive whole number, or `rng` is not a
-        generator.
-
     Notes
     -----
     Mittermaier et al. (2016), Eqs 5 and 8: zero-mean white Gaussian noise, independent between
@@ -52,9 +47,6 @@ def simulate(
     >>> truth.shape, z.shape
     ((100, 6), (5, 100, 6))
     """
-    _checks.instance("scenario", scenario, Scenario)
-    runs = _checks.whole_number("runs", runs)
-    _checks.generator("rng", rng)
     truth = scenario.truth
     z = np.empty((runs, scenario.samples, len(scenario.array)))
     for child, record in zip(rng.spawn(runs), z, strict=True):

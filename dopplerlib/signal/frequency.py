@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.fft
 
+from .._hints import checked
 from .._typing import ArrayLike, ComplexArray, FloatArray, IntArray
 from ._bins import about_mean, limits, samples, sum_of_ones, unmoving
 
@@ -16,6 +17,7 @@ _FIRST = np.zeros(1, dtype=int)
 _NEAREST = 1e-3  # bins from the constant: nearer than that a tone cannot be told from it
 
 
+@checked
 def ml_frequency(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the maximum-likelihood frequency of a tone, the highest peak of the periodogram.
 
@@ -37,12 +39,6 @@ def ml_frequency(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -
     ndarray, shape (...)
         Frequencies in Hz, positive when the target approaches; NaN for samples that are all the
         same: a module that measures has noise.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, there are less than two samples, `fs` is not positive, or `band`
-        is wider than fs.
 
     Notes
     -----
@@ -124,6 +120,7 @@ def peaks(
     return f, power
 
 
+@checked
 def ml_frequency_dc(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the maximum-likelihood frequency of a tone with an unknown DC offset.
 
@@ -142,12 +139,6 @@ def ml_frequency_dc(x: ArrayLike, fs: float, band: Sequence[float] | None = None
         Frequencies in Hz; NaN for samples that are all the same. Nothing tells a tone of less than
         a thousandth of a cycle in the window from the constant: that is the smallest that is looked
         at.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, there are less than three samples, `fs` is not positive, or
-        `band` is wider than fs.
 
     Notes
     -----

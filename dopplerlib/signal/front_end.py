@@ -5,6 +5,7 @@ from typing import overload
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, BoolArray, ComplexArray
 from .validity import known_samples
 
@@ -17,6 +18,7 @@ def lowpass(
 def lowpass(
     x: ArrayLike, fs: float, cutoff: float, taps: int, valid: ArrayLike
 ) -> tuple[ComplexArray, float, BoolArray]: ...
+@checked
 def lowpass(x, fs, cutoff, taps, valid=None):
     """Return low-pass filtered IQ samples, and the delay of the linear-phase filter.
 
@@ -42,11 +44,6 @@ def lowpass(x, fs, cutoff, taps, valid=None):
     valid : ndarray of bool, shape (..., n)
         Only if `valid` was given: which of y are made of valid samples alone. False for the length
         of the filter after each one that is not, and while it is filling.
-
-    Raises
-    ------
-    ValueError
-        If a valid sample is not finite, `cutoff` is not between 0 and fs / 2, or `taps` is even.
 
     Notes
     -----
@@ -85,6 +82,7 @@ def lowpass_decimate(
 def lowpass_decimate(
     x: ArrayLike, fs: float, factor: int, taps: int | None = None, *, valid: ArrayLike
 ) -> tuple[ComplexArray, float, float, BoolArray]: ...
+@checked
 def lowpass_decimate(x, fs, factor, taps=None, valid=None):
     """Return low-pass filtered and decimated IQ samples, and their delay.
 
@@ -112,11 +110,6 @@ def lowpass_decimate(x, fs, factor, taps=None, valid=None):
         Group delay in s: y[m] shows the signal at m / fs_out - delay.
     valid : ndarray of bool, shape (..., ceil(n / factor))
         Only if `valid` was given: which of y are made of valid samples alone.
-
-    Raises
-    ------
-    ValueError
-        See `lowpass`; or if `factor` is not a positive whole number.
 
     Notes
     -----

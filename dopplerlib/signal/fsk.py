@@ -3,18 +3,26 @@
 Signals and targets are those of `waveforms`.
 """
 
+from typing import Annotated
+
 import numpy as np
 
 from .. import _checks
+from .._hints import Positive, checked, up_to
 from .._typing import ArrayLike, ComplexArray, FloatArray
 from .waveforms import SPEED_OF_LIGHT, ChirpRadar, echo_delays, strongest_tones
 
 _MOST = 2**22  # samples of a signal
 
 
+@checked
 @_checks.quiet
 def fsk_beats(
-    radar: ChirpRadar, targets: ArrayLike, *, step: float = 1e6, samples: int = 512
+    radar: ChirpRadar,
+    targets: ArrayLike,
+    *,
+    step: Positive = 1e6,
+    samples: Annotated[int, up_to(_MOST, 3)] = 512,
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the beat signals of two alternating tones.
 
@@ -34,11 +42,6 @@ def fsk_beats(
     a, b : ndarray of complex, shape (samples,)
         Tone b is sent half an interval after tone a.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> radar = ChirpRadar(24e9, 150e6, 38e-3)
@@ -46,9 +49,7 @@ def fsk_beats(
     >>> [round(one, 1) for one in fsk_solve(radar, a, b)]
     [29.9, -5.0]
     """
-    _checks.instance("radar", radar, ChirpRadar)
-    samples = _checks.count("samples", samples, _MOST, least=3)
-    step, T = _checks.moderate_number("step", step), radar.duration
+    T = radar.duration
     t = np.arange(samples) * T / samples
     delays = echo_delays(targets, t), echo_delays(targets, t + T / samples / 2)
     a, b = (
@@ -60,7 +61,7 @@ def fsk_beats(
 
 @_checks.quiet
 def fsk_solve(
-    radar: ChirpRadar, a: ArrayLike, b: ArrayLike, *, step: float = 1e6
+    radar: ChirpRadar, a: ArrayLike, b: ArrayLike, *, step: Positive = 1e6
 ) -> tuple[float, float]:
     """Return range and range rate of the strongest tone of an FSK measurement.
 
@@ -91,13 +92,13 @@ def fsk_solve(
     [29.9, -5.0]
     """
     a, b, rate = _pair(radar, a, b)
-    step = _checks.moderate_number("step", step)
     (frequency,) = strongest_tones(a, rate, 1)
     phase = _phase_at(b, frequency, rate) - _phase_at(a, frequency, rate)
     turns = (phase / (2 * np.pi) - frequency * radar.duration / len(a) / 2) % 1
     return float(turns * SPEED_OF_LIGHT / (2 * step)), float(frequency * radar.wavelength / 2)
 
 
+@checked
 @_checks.quiet
 def mfsk_beats(
     radar: ChirpRadar, targets: ArrayLike, *, steps: int = 512, shift: float | None = None
@@ -120,11 +121,6 @@ def mfsk_beats(
     a, b : ndarray of complex, shape (steps,)
         One sample at the end of each step.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> radar = ChirpRadar(24e9, 150e6, 38e-3)
@@ -143,6 +139,7 @@ def mfsk_beats(
     return a, b
 
 
+@checked
 def mfsk_relations(
     radar: ChirpRadar, *, steps: int = 512, shift: float | None = None
 ) -> FloatArray:
@@ -160,11 +157,6 @@ def mfsk_relations(
     Returns
     -------
     ndarray, shape (2, 2)
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
 
     Examples
     --------

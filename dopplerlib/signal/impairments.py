@@ -1,8 +1,11 @@
 """Receiver impairments of IQ samples, and their correction."""
 
+from typing import Annotated
+
 import numpy as np
 
 from .. import _checks
+from .._hints import Positive, checked, up_to
 from .._typing import ArrayLike, BoolArray, ComplexArray
 from ._bins import about_mean, in_range
 from .validity import known_samples
@@ -10,6 +13,7 @@ from .validity import known_samples
 _DIFFERENT = 1e-12  # share of the powers' product: less than that is rounding
 
 
+@checked
 def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     """Add a DC offset to IQ samples, as carrier leakage does.
 
@@ -23,11 +27,6 @@ def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     Returns
     -------
     ndarray of complex, shape (..., n)
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite.
 
     Examples
     --------
@@ -43,6 +42,7 @@ def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     return x
 
 
+@checked
 @_checks.quiet
 def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
     """Subtract the mean of IQ samples over the last axis.
@@ -61,11 +61,6 @@ def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
     -------
     ndarray of complex, shape (..., n)
         The mean is that of the valid samples; the others become 0.
-
-    Raises
-    ------
-    ValueError
-        If a valid sample is not finite.
 
     Examples
     --------
@@ -88,6 +83,7 @@ def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
     return np.where(valid, x - mean, 0.0)
 
 
+@checked
 def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexArray:
     """Add the I/Q imbalance of a mixer to IQ samples.
 
@@ -105,11 +101,6 @@ def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexA
     ndarray of complex, shape (..., n)
         I and g (Q cos phi + I sin phi): a circle becomes an ellipse, and beside every tone a
         mirror image appears at the negative frequency, see `image_rejection`.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite.
 
     Examples
     --------
@@ -200,6 +191,7 @@ def correct_iq_imbalance(x: ArrayLike, valid: ArrayLike | None = None) -> Comple
     return x.real + 1j * (ii * x.imag - iq * x.real) / np.sqrt(np.where(dead, 1.0, left))
 
 
+@checked
 def branches_differ(x: ArrayLike, valid: ArrayLike | None = None) -> BoolArray:
     """Return the records whose I and Q are not proportional, so that the sign of Doppler is known.
 
@@ -216,11 +208,6 @@ def branches_differ(x: ArrayLike, valid: ArrayLike | None = None) -> BoolArray:
         False for a module without Q, or with twice the same branch; there `correct_iq_imbalance`
         refuses. True for one that is dead.
 
-    Raises
-    ------
-    ValueError
-        If a valid sample is not finite.
-
     Examples
     --------
     >>> branches_differ([[1, -1, 1j, -1j], [1, -1, 2, -2], [0, 0, 0, 0]]).tolist()
@@ -230,7 +217,8 @@ def branches_differ(x: ArrayLike, valid: ArrayLike | None = None) -> BoolArray:
     return ((left > _DIFFERENT * ii * qq) | ((ii == 0) & (qq == 0)))[..., 0]
 
 
-def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
+@checked
+def quantize(x: ArrayLike, bits: Annotated[int, up_to(52)], full_scale: Positive) -> ComplexArray:
     """Quantize IQ samples to the resolution of an analog-to-digital converter.
 
     Parameters
@@ -238,7 +226,7 @@ def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
     x : array_like of complex, shape (..., n)
         IQ samples.
     bits : int
-        Bits for each of I and Q.
+        Bits for each of I and Q, at most 52: beyond, a float has no steps of its own.
     full_scale : float
         Largest amplitude of I and Q; what lies beyond is clipped to the last step.
 
@@ -246,12 +234,6 @@ def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
     -------
     ndarray of complex, shape (..., n)
         The middles of 2^bits equal steps from -full_scale to full_scale.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, `full_scale` is not between 1e-60 and 1e60, or `bits` is no whole
-        number up to 52, beyond which a float has no steps of its own.
 
     Notes
     -----
@@ -264,8 +246,8 @@ def quantize(x: ArrayLike, bits: int, full_scale: float) -> ComplexArray:
     [(0.25-0.75j), (0.75+0.25j)]
     """
     x = _checks.finite_complex("x", x, (None,))
-    levels = 2 ** _checks.count("bits", bits, 52)
-    step = 2 * _checks.moderate_number("full_scale", full_scale) / levels
+    levels = 2**bits
+    step = 2 * full_scale / levels
 
     def steps(part):
         with np.errstate(over="ignore"):  # what is far outside is clipped

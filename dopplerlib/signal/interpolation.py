@@ -12,13 +12,14 @@ from typing import Literal
 
 import numpy as np
 
-from .. import _checks
+from .._hints import Count, checked
 from .._typing import ArrayLike, FloatArray
 from ._bins import ratio, samples, transform
 
 _LEAST = 1e-300  # stands for an empty bin, which has no logarithm
 
 
+@checked
 def peak_bin(
     x: ArrayLike, fs: float, band: Sequence[float] | None = None, nfft: int | None = None
 ) -> FloatArray:
@@ -40,11 +41,6 @@ def peak_bin(
     ndarray, shape (...)
         Frequencies in Hz, multiples of fs / nfft; NaN for samples that are all the same.
 
-    Raises
-    ------
-    ValueError
-        If a value is not finite, `fs` is not positive, or `band` is wider than fs or holds no bin.
-
     Examples
     --------
     >>> from dopplerlib.signal.synthesis import tone
@@ -56,6 +52,7 @@ def peak_bin(
     return bins.hertz(bins.peak())
 
 
+@checked
 def parabolic(
     x: ArrayLike,
     fs: float,
@@ -77,11 +74,6 @@ def parabolic(
     ndarray, shape (...)
         Frequencies in Hz; NaN for a window that tells none.
 
-    Raises
-    ------
-    ValueError
-        See `peak_bin`; or if `scale` is neither of the two.
-
     Examples
     --------
     The shape of a peak is no parabola; padding brings the three points to its top:
@@ -91,7 +83,6 @@ def parabolic(
     >>> [round(float(parabolic(x, 1000.0, nfft=nfft)), 2) for nfft in (100, 400)]
     [120.74, 122.99]
     """
-    _checks.one_of("scale", scale, ("magnitude", "log"))
     bins = transform(x, fs, band, nfft, least=3)
     k = bins.peak()
     y = [np.abs(bins.at(k + step)) for step in (-1, 0, 1)]
@@ -100,6 +91,7 @@ def parabolic(
     return bins.hertz(k + ratio(y[0] - y[2], 2 * (y[0] - 2 * y[1] + y[2])))
 
 
+@checked
 def parabolic_three_highest(
     x: ArrayLike, fs: float, band: Sequence[float] | None = None, nfft: int | None = None
 ) -> FloatArray:
@@ -118,11 +110,6 @@ def parabolic_three_highest(
     ndarray, shape (...)
         Frequencies in Hz, anywhere: a flat parabola has its vertex far away. NaN for a window that
         tells none.
-
-    Raises
-    ------
-    ValueError
-        See `peak_bin`; or if the band holds less than three bins.
 
     Notes
     -----
@@ -150,6 +137,7 @@ def parabolic_three_highest(
     return np.where(bins.still, np.nan, vertex) * bins.fs / bins.nfft
 
 
+@checked
 def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the frequency by Jacobsen and Kootsookos, from three complex bins.
 
@@ -162,11 +150,6 @@ def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Fl
     -------
     ndarray, shape (...)
         Frequencies in Hz; NaN for a window that tells none.
-
-    Raises
-    ------
-    ValueError
-        See `peak_bin`.
 
     Notes
     -----
@@ -184,6 +167,7 @@ def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Fl
     return bins.hertz(k + _jacobsen(bins, k))
 
 
+@checked
 def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the frequency by Candan: `jacobsen` with a correction of its bias.
 
@@ -196,11 +180,6 @@ def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     -------
     ndarray, shape (...)
         Frequencies in Hz; NaN for a window that tells none.
-
-    Raises
-    ------
-    ValueError
-        See `peak_bin`.
 
     Notes
     -----
@@ -218,6 +197,7 @@ def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     return bins.hertz(k + _jacobsen(bins, k) * np.tan(np.pi / bins.n) * bins.n / np.pi)
 
 
+@checked
 def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Quinn's first estimate, from the highest bin and the neighbor on the tone's side.
 
@@ -230,11 +210,6 @@ def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     -------
     ndarray, shape (...)
         Frequencies in Hz; NaN for a window that tells none.
-
-    Raises
-    ------
-    ValueError
-        See `peak_bin`.
 
     Notes
     -----
@@ -253,6 +228,7 @@ def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     return bins.hertz(k + np.where((left > 0) & (right > 0), right, left))
 
 
+@checked
 def quinn2(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Quinn's second estimate, which weights both neighbors.
 
@@ -265,11 +241,6 @@ def quinn2(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     -------
     ndarray, shape (...)
         Frequencies in Hz; NaN for a window that tells none.
-
-    Raises
-    ------
-    ValueError
-        See `peak_bin`.
 
     Notes
     -----
@@ -288,8 +259,9 @@ def quinn2(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
     return bins.hertz(k + (left + right) / 2 + _kappa(right**2) - _kappa(left**2))
 
 
+@checked
 def aboutanios_mulgrew(
-    x: ArrayLike, fs: float, band: Sequence[float] | None = None, iterations: int = 2
+    x: ArrayLike, fs: float, band: Sequence[float] | None = None, iterations: Count = 2
 ) -> FloatArray:
     """Return the frequency by Aboutanios and Mulgrew, from Fourier sums half a bin off the peak.
 
@@ -305,11 +277,6 @@ def aboutanios_mulgrew(
     ndarray, shape (...)
         Frequencies in Hz; NaN for a window that tells none.
 
-    Raises
-    ------
-    ValueError
-        See `peak_bin`; or if `iterations` is no positive whole number.
-
     Notes
     -----
     Aboutanios and Mulgrew (2005), their first algorithm: after two iterations the variance is
@@ -322,7 +289,6 @@ def aboutanios_mulgrew(
     >>> round(float(aboutanios_mulgrew(x, 1000.0)), 2)
     123.0
     """
-    iterations = _checks.whole_number("iterations", iterations)
     x, fs = samples(x, fs)
     bins = transform(x, fs, band)
     k = bins.peak()

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import AboveZero, checked
 from .._typing import ArrayLike, FloatArray
 from ._bins import sum_of_ones
 
@@ -10,8 +11,9 @@ from ._bins import sum_of_ones
 _VARIANCE = 6 / (2 * np.pi) ** 2
 
 
+@checked
 @_checks.quiet
-def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: float) -> FloatArray:
+def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: AboveZero) -> FloatArray:
     """Return the Cramér-Rao bound on the standard deviation of a tone's frequency.
 
     Parameters
@@ -28,11 +30,6 @@ def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: float) -> FloatArray:
     ndarray, shape (...)
         Cramér-Rao lower bound in Hz, amplitude and phase unknown.
 
-    Raises
-    ------
-    ValueError
-        If `snr` or `fs` is not positive, or `n` is less than 2.
-
     Notes
     -----
     Rife and Boorstyn (1974): the variance is 6 fs^2 / ((2 pi)^2 snr n (n^2 - 1)).
@@ -47,14 +44,14 @@ def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: float) -> FloatArray:
     if (n < 2).any():
         raise ValueError(f"n must be at least 2, got {n.min():g}")
     _checks.check_leading(snr=(snr, 0), n=(n, 0))
-    fs = _checks.positive_number("fs", fs)
     bound = fs * np.sqrt(_VARIANCE / snr / n / (n**2 - 1))
     _checks.estimates("snr, n, fs", bound, what="bound")
     return bound
 
 
+@checked
 @_checks.quiet
-def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> FloatArray:
+def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: AboveZero) -> FloatArray:
     """Return the Cramér-Rao bound on a tone's frequency with an unknown DC offset.
 
     Parameters
@@ -69,11 +66,6 @@ def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> Fl
     ndarray, shape (...)
         Cramér-Rao lower bound in Hz; amplitude, phase and the constant are unknown. It tends to
         that of the tone alone with the number of cycles in the window, and is infinite for f = 0.
-
-    Raises
-    ------
-    ValueError
-        If `f` is not finite, `snr` or `fs` is not positive, or `n` is less than 3.
 
     Notes
     -----
@@ -92,7 +84,7 @@ def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> Fl
     [0.75, 0.37, 0.31]
     """
     f, snr = _checks.finite("f", f), _checks.positive("snr", snr)
-    n, fs = _checks.moderate("n", n), _checks.positive_number("fs", fs)
+    n = _checks.moderate("n", n)
     if (n < 3).any():
         raise ValueError(f"n must be at least 3, got {n.min():g}")
     _checks.check_leading(f=(f, 0), snr=(snr, 0), n=(n, 0))
@@ -105,6 +97,7 @@ def crlb_frequency_std_dc(f: ArrayLike, snr: ArrayLike, n: int, fs: float) -> Fl
     return crlb_frequency_std(snr, n, fs) * factor
 
 
+@checked
 @_checks.quiet
 def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
     """Return the window length at which the bound on the frequency has a given standard deviation.
@@ -120,11 +113,6 @@ def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
     -------
     ndarray, shape (...)
         Length in s, for a window of many samples.
-
-    Raises
-    ------
-    ValueError
-        If a value is not positive.
 
     Notes
     -----
@@ -142,6 +130,7 @@ def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
     return length
 
 
+@checked
 @_checks.quiet
 def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
     """Return the integrated signal-to-noise ratio for a given standard deviation of the frequency.
@@ -157,11 +146,6 @@ def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
     -------
     ndarray, shape (...)
         n times the ratio of a sample, not in dB. How many samples there are does not matter.
-
-    Raises
-    ------
-    ValueError
-        If a value is not positive.
 
     Notes
     -----
@@ -179,8 +163,9 @@ def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
     return snr
 
 
+@checked
 @_checks.quiet
-def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatArray:
+def outlier_probability(integrated_snr: ArrayLike, candidates: AboveZero) -> FloatArray:
     """Return the probability of an outlier: a peak of the noise above that of the tone.
 
     Parameters
@@ -188,17 +173,13 @@ def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatAr
     integrated_snr : array_like, shape (...)
         n times the signal-to-noise ratio of a sample, not in dB.
     candidates : float
-        Number of independent places for a peak: n, or with a band its width times the window.
+        Number of independent places for a peak, at least 2: n, or with a band its width times the
+        window.
 
     Returns
     -------
     ndarray, shape (...)
         Probability that another place wins.
-
-    Raises
-    ------
-    ValueError
-        If a value is not positive, or there are less than two candidates.
 
     Notes
     -----
@@ -214,7 +195,6 @@ def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatAr
 
     # From far below the limit on, exp(-a^2) is zero, and so is the probability.
     s = np.minimum(_checks.positive("integrated_snr", integrated_snr), 1e6)[..., None]
-    candidates = _checks.positive_number("candidates", candidates)
     if candidates < 2:
         raise ValueError(f"candidates must be at least 2, got {candidates:g}")
     # The amplitude is Rice distributed: nine deviations of 0.7 around its mode hold all of it.
@@ -226,6 +206,7 @@ def outlier_probability(integrated_snr: ArrayLike, candidates: float) -> FloatAr
     return np.sum(weight * density * beaten, axis=-1) * (high - low)[..., 0] / 2
 
 
+@checked
 def overlap_correlation(tau: ArrayLike) -> FloatArray:
     """Return the correlation between the errors of two overlapping windows.
 
@@ -239,11 +220,6 @@ def overlap_correlation(tau: ArrayLike) -> FloatArray:
     ndarray, shape (...)
         1 - 3 tau + 2 tau^3 up to tau = 1, and 0 beyond.
 
-    Raises
-    ------
-    ValueError
-        If a value is not finite.
-
     Examples
     --------
     Half an overlap leaves less than nothing in common:
@@ -255,6 +231,7 @@ def overlap_correlation(tau: ArrayLike) -> FloatArray:
     return 1 - 3 * tau + 2 * tau**3
 
 
+@checked
 def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
     """Return the correlation between the errors of two overlapping windows of n samples.
 
@@ -268,11 +245,6 @@ def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray, shape (...)
-
-    Raises
-    ------
-    ValueError
-        If `n` is no whole number of at least 2, or a lag is not finite.
 
     Notes
     -----
@@ -292,6 +264,7 @@ def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
     return products / (n * (n**2 - 1))
 
 
+@checked
 @_checks.quiet
 def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
     """Return the optimal window length for the frequency at the end of the window.
@@ -301,18 +274,12 @@ def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
     cn0 : array_like, shape (...)
         Power of the tone over the noise power in 1 Hz, in Hz.
     chirp : array_like, broadcast to (...)
-        Rate of change of the frequency in Hz/s.
+        Rate of change of the frequency in Hz/s, not 0: then the longest window is the best.
 
     Returns
     -------
     ndarray, shape (...)
         Length in s with the least mean-square error.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, `cn0` is not positive, or `chirp` is zero: then the longest
-        window is the best.
 
     Notes
     -----
@@ -330,6 +297,7 @@ def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
     return length
 
 
+@checked
 @_checks.quiet
 def optimal_window_center(cn0: ArrayLike, curvature: ArrayLike) -> FloatArray:
     """Return the optimal window length for the frequency at the middle of the window.
@@ -339,18 +307,12 @@ def optimal_window_center(cn0: ArrayLike, curvature: ArrayLike) -> FloatArray:
     cn0 : array_like, shape (...)
         Power of the tone over the noise power in 1 Hz, in Hz.
     curvature : array_like, broadcast to (...)
-        Second derivative of the frequency in Hz/s^2.
+        Second derivative of the frequency in Hz/s^2, not 0: then the longest window is best.
 
     Returns
     -------
     ndarray, shape (...)
         Length in s with the least mean-square error.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, `cn0` is not positive, or `curvature` is zero: then the longest
-        window is the best.
 
     Notes
     -----

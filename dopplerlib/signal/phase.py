@@ -4,11 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .. import _checks
+from .._hints import Count, checked
 from .._typing import ArrayLike, FloatArray
 from ._bins import limits, samples, still_windows
 
 
+@checked
 def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Kay's weighted mean of phase differences, as a frequency.
 
@@ -26,11 +27,6 @@ def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatAr
     ndarray, shape (...)
         Frequencies in Hz; NaN for samples that are all the same, and where no product of two
         samples tells a phase.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, `fs` is not positive, or `band` is wider than fs.
 
     Notes
     -----
@@ -55,8 +51,9 @@ def kay(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatAr
     return np.where(still_windows(x) | ~steps.any(axis=-1), np.nan, f)
 
 
+@checked
 def pulse_pair(
-    x: ArrayLike, fs: float, band: Sequence[float] | None = None, lag: int = 1
+    x: ArrayLike, fs: float, band: Sequence[float] | None = None, lag: Count = 1
 ) -> FloatArray:
     """Return the pulse-pair frequency: the phase of the autocorrelation at one lag.
 
@@ -78,12 +75,6 @@ def pulse_pair(
         Frequencies in Hz; NaN for samples that are all the same, and where no product of two
         samples tells a phase.
 
-    Raises
-    ------
-    ValueError
-        If a value is not finite, `fs` is not positive, `band` is wider than fs, or `lag` is not a
-        whole number from 1 to n - 1.
-
     Notes
     -----
     The pulse-pair processor of weather radars; Lank, Reed and Pollon (1973) give its variance.
@@ -96,7 +87,6 @@ def pulse_pair(
     123.0
     """
     x, fs = samples(x, fs)
-    lag = _checks.whole_number("lag", lag)
     if lag >= x.shape[-1]:
         raise ValueError(f"lag must be less than the {x.shape[-1]} samples, got {lag}")
     low, high, _ = limits(band, fs)

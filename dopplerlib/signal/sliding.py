@@ -1,11 +1,12 @@
 """Doppler shifts in sliding windows of IQ samples, with their timestamps."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from .. import _checks
+from .._hints import Count, Positive, checked, up_to
 from .._records import record
 from .._typing import ArrayLike, FloatArray
 from ._bins import about_mean, sum_of_ones, unmoving
@@ -19,6 +20,7 @@ _MOST = 2**40  # samples in a window
 _FINEST = 1e-6  # bins: so much the search for the peak leaves, see `_ml_kernel`
 
 
+@checked
 @record
 class DopplerRecord:
     """Doppler shifts in windows of IQ samples.
@@ -45,20 +47,15 @@ class DopplerRecord:
         Sampling rate in Hz.
     dc_fitted : bool
         Whether the windows hold a constant that was estimated together with the tone.
-
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described.
     """
 
     time: np.ndarray
     frequency: np.ndarray
     amp2: np.ndarray
     noise_variance: np.ndarray
-    window: int
-    hop: int
-    fs: float
+    window: Annotated[int, up_to(_MOST, 3)]
+    hop: Count
+    fs: Positive
     dc_fitted: bool = False
 
     def __post_init__(self):
@@ -78,10 +75,6 @@ class DopplerRecord:
         for name, value in (
             *arrays.items(),
             ("time", _checks.finite("time", self.time, frequency.shape[-2:-1])),
-            ("window", _checks.count("window", self.window, _MOST, 3)),
-            ("hop", _checks.whole_number("hop", self.hop)),
-            ("fs", _checks.moderate_number("fs", self.fs)),
-            ("dc_fitted", _checks.one_boolean("dc_fitted", self.dc_fitted)),
         ):
             object.__setattr__(self, name, value)
         if self.time.ndim != 1:

@@ -1,11 +1,12 @@
 """Simulated IQ samples: tones, radial velocities, paths in front of an array."""
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from .. import _checks
+from .._hints import Positive, checked, up_to
 from .._typing import ArrayLike, ComplexArray, FloatArray
 from ..model.doppler import check_clear_of_sensors
 from ..model.radar_array import RadarArray
@@ -63,6 +64,7 @@ def velocity_profile(
     return v, a
 
 
+@checked
 def complex_noise(
     shape: int | tuple[int, ...], variance: float, *, rng: np.random.Generator
 ) -> ComplexArray:
@@ -81,19 +83,12 @@ def complex_noise(
     -------
     ndarray of complex, shape `shape`
 
-    Raises
-    ------
-    ValueError
-        If `shape` is no shape, `variance` is negative or not finite, or `rng` is not a generator.
-
     Examples
     --------
     >>> noise = complex_noise(10000, 2.0, rng=np.random.default_rng(1))
     >>> round(float(np.mean(np.abs(noise) ** 2)), 1)
     2.0
     """
-    _checks.generator("rng", rng)
-    variance = _checks.one_number("variance", variance)
     if variance < 0:
         raise ValueError(f"variance must not be negative, got {variance}")
     noise = rng.standard_normal((*_checks.shape("shape", shape), 2)).view(complex)[..., 0]
@@ -101,10 +96,11 @@ def complex_noise(
     return noise
 
 
+@checked
 def tone(
     f: ArrayLike,
-    fs: float,
-    n: int,
+    fs: Positive,
+    n: Annotated[int, up_to(2**40)],
     snr_db: float | None,
     *,
     rng: np.random.Generator,
@@ -131,32 +127,25 @@ def tone(
     -------
     ndarray of complex, shape (..., n)
 
-    Raises
-    ------
-    ValueError
-        If a value is not finite, `fs` or `n` is not positive, or `rng` is not a generator.
-
     Examples
     --------
     >>> x = tone(250.0, 1000.0, 4, None, rng=np.random.default_rng(1))
     >>> np.allclose(x / x[0], [1, 1j, -1, -1j])
     True
     """
-    _checks.generator("rng", rng)
     f, chirp = _checks.moderate("f", f), _checks.moderate("chirp", chirp)
     _checks.check_broadcast("chirp", chirp.shape, "f", f.shape)
     f, chirp = np.broadcast_arrays(f, chirp)
-    fs = _checks.moderate_number("fs", fs)
-    n = _checks.count("n", n, 2**40)
     t = (np.arange(n) - (n - 1) / 2) / fs
     cycles = f[..., None] * t + chirp[..., None] * t**2 / 2
     return _signal(cycles, 1.0, snr_db, rng)
 
 
+@checked
 def iq_from_velocity(
     v: ArrayLike,
-    T: float,
-    wavelength: float,
+    T: Positive,
+    wavelength: Positive,
     snr_db: float | None,
     *,
     rng: np.random.Generator,
@@ -185,26 +174,19 @@ def iq_from_velocity(
     ndarray of complex, shape (..., n) or (size, ..., n)
         Doppler frequencies 2 v / wavelength, positive when the target approaches.
 
-    Raises
-    ------
-    ValueError
-        If a value is not finite or not positive where it has to be, or `rng` is not a generator.
-
     Examples
     --------
     >>> x = iq_from_velocity([1.0, 1.0], 1 / 640, 0.0125, None, rng=np.random.default_rng(1))
     >>> complex((x[1] / x[0]).round(12))  # a quarter turn: 160 Hz
     1j
     """
-    _checks.generator("rng", rng)
     v = _checks.moderate("v", v, (None,))
-    T = _checks.moderate_number("T", T)
-    wavelength = _checks.moderate_number("wavelength", wavelength)
     cycles = np.zeros(v.shape)
     np.cumsum((v[..., 1:] + v[..., :-1]) * (T / wavelength), axis=-1, out=cycles[..., 1:])
     return _signal(cycles, 1.0, snr_db, rng, size)
 
 
+@checked
 def iq_from_geometry(
     position: ArrayLike,
     array: RadarArray,
@@ -237,12 +219,6 @@ def iq_from_geometry(
     -------
     ndarray of complex, shape (..., N, n) or (size, ..., N, n)
 
-    Raises
-    ------
-    ValueError
-        If a value is not finite, the path meets a sensor, `amplitude` is neither of the two, or
-        `rng` is not a generator.
-
     Notes
     -----
     The wave travels the range r twice, so its phase is -4 pi r / wavelength, and its derivative
@@ -260,10 +236,8 @@ def iq_from_geometry(
     >>> x.shape, round(float(np.angle(x[0, 1] / x[0, 0]) / (2 * np.pi)), 3)
     ((1, 2), 0.16)
     """
-    _checks.generator("rng", rng)
-    _checks.instance("array", array, RadarArray)
     position = _checks.moderate("position", position, (None, 3))
-    power = _AMPLITUDES[_checks.one_of("amplitude", amplitude, tuple(_AMPLITUDES))]
+    power = _AMPLITUDES[amplitude]
     check_clear_of_sensors("position", position, array)
     r = np.linalg.norm(position[..., None, :, :] - array.positions[:, None], axis=-1)
     return _signal(-2 * r / array.wavelength, r**power, snr_db, rng, size)

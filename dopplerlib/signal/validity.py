@@ -5,6 +5,7 @@ from typing import overload
 import numpy as np
 
 from .. import _checks
+from .._hints import AboveZero, Count, Probability, checked
 from .._typing import ArrayLike, BoolArray, ComplexArray
 
 # So many samples stand still if they move less than this share of the module's noise.
@@ -24,12 +25,13 @@ _AT_ONCE = 2**20  # samples
 _BESIDE_LOUD = 32  # samples among which a loud one is told
 
 
+@checked
 def valid_samples(
     x: ArrayLike,
     *,
-    full_scale: float | None = None,
-    longest_run: int | None = None,
-    false_alarm: float = 1e-9,
+    full_scale: AboveZero | None = None,
+    longest_run: Count | None = None,
+    false_alarm: Probability = 1e-9,
 ) -> BoolArray:
     """Return the mask of valid samples.
 
@@ -62,12 +64,6 @@ def valid_samples(
           in 16 samples, 0.01 in 32 or 0.1 in 128, or 0.001 of that of the other modules;
         - I or Q is clipped.
 
-    Raises
-    ------
-    ValueError
-        If `x` does not consist of numbers, `full_scale` is not positive, `longest_run` is no
-        positive whole number, or `false_alarm` is not between 0 and 1.
-
     Notes
     -----
     If a sample repeats the one before with probability p, a run of L equal samples begins somewhere
@@ -97,11 +93,6 @@ def valid_samples(
     True
     """
     x = _checks.numbers("x", x, (None,))
-    if full_scale is not None:
-        full_scale = _checks.positive_number("full_scale", full_scale)
-    if longest_run is not None:
-        longest_run = _checks.whole_number("longest_run", longest_run)
-    false_alarm = _checks.probability("false_alarm", false_alarm)
     shape = x.shape
     if not x.size:
         return np.ones(shape, dtype=bool)
@@ -124,6 +115,7 @@ def known_samples(
 def known_samples(
     name: str, x: ArrayLike, valid: ArrayLike, shape: tuple[int | None, ...]
 ) -> tuple[ComplexArray, BoolArray]: ...
+@checked
 def known_samples(name, x, valid, shape):
     """Return samples with zeros in place of invalid ones, and the mask of valid samples.
 
@@ -145,11 +137,6 @@ def known_samples(name, x, valid, shape):
     x : ndarray of complex, shape (...)
     valid : ndarray of bool, shape (...), or None
         None if None was given.
-
-    Raises
-    ------
-    ValueError
-        If a valid sample is not finite, or a shape does not fit.
 
     Examples
     --------

@@ -3,14 +3,17 @@
 All signals are at complex baseband, after mixing with what is sent (the pulse: with the carrier).
 Targets are rows of range in m and range rate in m/s, positive when receding; echoes have amplitude
 1. The phase is that of the exact delay 2 (r + v t) / c at every instant, so that the textbook
-relations for beat frequencies, which the estimators invert, are approximations here too.
+relations for beat frequencies, which the estimators invert, are approximations here too. All
+echoes together have at most 33 million samples.
 """
 
 from collections.abc import Iterable
+from typing import Annotated
 
 import numpy as np
 
 from .. import _checks
+from .._hints import Positive, Real, checked, up_to
 from .._records import record
 from .._typing import ArrayLike, ComplexArray, FloatArray
 
@@ -18,6 +21,7 @@ SPEED_OF_LIGHT = 299_792_458.0  # m/s
 _MOST = 2**25  # samples of all targets together
 
 
+@checked
 @record
 class ChirpRadar:
     """Bandwidth and duration of the sweep of a chirp radar.
@@ -31,11 +35,6 @@ class ChirpRadar:
     duration : float
         Length of one measurement in s.
 
-    Raises
-    ------
-    ValueError
-        If one of them is not a positive number from 1e-60 to 1e60.
-
     Examples
     --------
     >>> radar = ChirpRadar(carrier=24e9, bandwidth=150e6, duration=38e-3)
@@ -45,15 +44,9 @@ class ChirpRadar:
     42
     """
 
-    carrier: float
-    bandwidth: float
-    duration: float
-
-    def __post_init__(self):
-        """Check the fields."""
-        for name in ("carrier", "bandwidth", "duration"):
-            number = _checks.moderate_number(name, getattr(self, name))
-            object.__setattr__(self, name, number)
+    carrier: Positive
+    bandwidth: Positive
+    duration: Positive
 
     @property
     def wavelength(self) -> float:
@@ -70,14 +63,16 @@ class ChirpRadar:
         """Smallest difference of two range rates, lambda / (2 T), in m/s."""
         return self.wavelength / 2 / self.duration
 
-    def speed_limit(self, chirps: int = 512) -> float:
+    @checked
+    def speed_limit(self, chirps: Annotated[int, up_to(_MOST)] = 512) -> float:
         """Return the largest unambiguous range rate in m/s of a number of rapid chirps.
 
         A Doppler shift of half the rate of the chirps: lambda / (4 T_chirp).
         """
-        return self.wavelength * _checks.count("chirps", chirps, _MOST) / (4 * self.duration)
+        return self.wavelength * chirps / (4 * self.duration)
 
 
+@checked
 @_checks.quiet
 def echo_delays(targets: ArrayLike, time: ArrayLike) -> FloatArray:
     """Return the delays of the echoes of all targets.
@@ -94,12 +89,6 @@ def echo_delays(targets: ArrayLike, time: ArrayLike) -> FloatArray:
     ndarray, shape (targets, ...)
         Delays in s; the axes after the first are those of `time`.
 
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, a value is not finite or beyond 1e60, or the echoes would have
-        more than 33 million samples.
-
     Examples
     --------
     >>> echo_delays([[150.0, 0.0], [300.0, 10.0]], [0.0, 1.0]).round(9).tolist()
@@ -114,15 +103,16 @@ def echo_delays(targets: ArrayLike, time: ArrayLike) -> FloatArray:
     return delays.reshape(len(targets), *time.shape)
 
 
+@checked
 @_checks.quiet
 def pulse_train(
     radar: ChirpRadar,
     targets: ArrayLike,
     *,
-    pulses: int = 64,
-    interval: float = 20e-6,
-    rate: float = 600e6,
-    reach: float = 120.0,
+    pulses: Annotated[int, up_to(_MOST)] = 64,
+    interval: Positive = 20e-6,
+    rate: Positive = 600e6,
+    reach: Positive = 120.0,
 ) -> tuple[FloatArray, ComplexArray]:
     """Return the echoes of short rectangular pulses, one row for each pulse.
 
@@ -147,12 +137,6 @@ def pulse_train(
         Range in m that the time of each sample stands for.
     signal : ndarray of complex, shape (pulses, samples)
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the echoes would have more than 33 million
-        samples.
-
     Examples
     --------
     >>> radar = ChirpRadar(24e9, 150e6, 38e-3)
@@ -160,10 +144,6 @@ def pulse_train(
     >>> distance[np.abs(signal[0]) > 0].round(1).tolist()
     [30.2, 30.5, 30.7, 31.0]
     """
-    _checks.instance("radar", radar, ChirpRadar)
-    pulses = _checks.count("pulses", pulses, _MOST)
-    interval = _checks.moderate_number("interval", interval)
-    rate, reach = _checks.moderate_number("rate", rate), _checks.moderate_number("reach", reach)
     samples = 2 * reach / SPEED_OF_LIGHT * rate
     if not 0.5 < samples * pulses < _MOST or samples < 0.5:
         raise ValueError(
@@ -178,15 +158,16 @@ def pulse_train(
     return fast * SPEED_OF_LIGHT / 2, echo
 
 
+@checked
 @_checks.quiet
 def chirp_beat(
     radar: ChirpRadar,
     targets: ArrayLike,
-    slope: float,
+    slope: Real,
     *,
-    duration: float | None = None,
-    samples: int = 1024,
-    begin: float = 0.0,
+    duration: Positive | None = None,
+    samples: Annotated[int, up_to(_MOST)] = 1024,
+    begin: Real = 0.0,
 ) -> ComplexArray:
     """Return the beat signal of one linear chirp: the transmitted signal times the conjugate echo.
 
@@ -210,12 +191,6 @@ def chirp_beat(
     ndarray of complex, shape (samples,)
         Each target gives nearly a tone, see `chirp_relation`.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the echoes would have more than 33 million
-        samples.
-
     Examples
     --------
     >>> radar = ChirpRadar(24e9, 150e6, 38e-3)
@@ -223,18 +198,16 @@ def chirp_beat(
     >>> bool(np.allclose(np.abs(signal), 1))
     True
     """
-    _checks.instance("radar", radar, ChirpRadar)
-    slope = _checks.one_number("slope", slope, _checks.moderate)
-    T = radar.duration if duration is None else _checks.moderate_number("duration", duration)
-    samples = _checks.count("samples", samples, _MOST)
+    T = radar.duration if duration is None else duration
     t = np.arange(samples) * T / samples
-    delay = echo_delays(targets, _checks.one_number("begin", begin, _checks.moderate) + t)
+    delay = echo_delays(targets, begin + t)
     # phi(t) - phi(t - delay) with phi(t) = 2 pi (f0 t + slope t^2 / 2)
     cycles = radar.carrier * delay + slope * delay * (t - delay / 2)
     return np.exp(2j * np.pi * cycles).sum(axis=0)
 
 
-def chirp_relation(radar: ChirpRadar, slope: float) -> FloatArray:
+@checked
+def chirp_relation(radar: ChirpRadar, slope: Real) -> FloatArray:
     """Return the row [a, b] with beat frequency = a r + b v of a chirp.
 
     Parameters
@@ -249,18 +222,11 @@ def chirp_relation(radar: ChirpRadar, slope: float) -> FloatArray:
     ndarray, shape (2,)
         In Hz per m and Hz per m/s.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> chirp_relation(ChirpRadar(24e9, 150e6, 38e-3), 150e6 / 38e-3).round(1).tolist()
     [26.3, 160.1]
     """
-    _checks.instance("radar", radar, ChirpRadar)
-    slope = _checks.one_number("slope", slope, _checks.moderate)
     return np.array([2 * slope / SPEED_OF_LIGHT, 2 * radar.carrier / SPEED_OF_LIGHT])
 
 
@@ -306,6 +272,7 @@ def strongest_tones(signal: ArrayLike, rate: float, count: int) -> FloatArray:
     return np.sort(np.fft.fftfreq(n, 1 / rate)[best])
 
 
+@checked
 @_checks.quiet
 def chirp_intersections(
     relations: ArrayLike, frequencies: Iterable[ArrayLike]
@@ -326,11 +293,6 @@ def chirp_intersections(
     misfit : ndarray, shape (pairs,)
         Largest distance of the predicted tone from the nearest one in the other chirps, in Hz; zero
         if there are only two.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite, or the first two chirps tell the same.
 
     Examples
     --------
@@ -367,8 +329,13 @@ def chirp_intersections(
     return targets, misfit
 
 
+@checked
 def rapid_chirps(
-    radar: ChirpRadar, targets: ArrayLike, *, chirps: int = 512, samples: int = 256
+    radar: ChirpRadar,
+    targets: ArrayLike,
+    *,
+    chirps: Annotated[int, up_to(_MOST)] = 512,
+    samples: int = 256,
 ) -> ComplexArray:
     """Return the beat signals of a sequence of fast chirps, one row for each.
 
@@ -387,20 +354,12 @@ def rapid_chirps(
     -------
     ndarray of complex, shape (chirps, samples)
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the echoes would have more than 33 million
-        samples.
-
     Examples
     --------
     >>> rapid_chirps(ChirpRadar(24e9, 150e6, 38e-3), [20.0, 3.0], chirps=8, samples=4).shape
     (8, 4)
     """
-    _checks.instance("radar", radar, ChirpRadar)
-    chirps = _checks.count("chirps", chirps, _MOST)
-    _checks.count("chirps times samples", chirps * _checks.count("samples", samples, _MOST), _MOST)
+    _checks.count("chirps times samples", chirps * samples, _MOST)
     one = radar.duration / chirps
     return np.stack([
         chirp_beat(
@@ -410,6 +369,7 @@ def rapid_chirps(
     ])  # fmt: skip
 
 
+@checked
 @_checks.quiet
 def range_doppler_map(
     radar: ChirpRadar, signal: ArrayLike
@@ -432,11 +392,6 @@ def range_doppler_map(
     power : ndarray, shape (chirps, samples / 2)
         In dB; a single echo has a peak of 0 dB.
 
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
-
     Examples
     --------
     >>> radar = ChirpRadar(24e9, 150e6, 38e-3)
@@ -444,7 +399,6 @@ def range_doppler_map(
     >>> [round(one) for one in strongest_cell(r, v, power)]
     [20, 3]
     """
-    _checks.instance("radar", radar, ChirpRadar)
     signal = _checks.one_matrix("signal", _checks.finite_complex("signal", signal, (None, None)))
     chirps, samples = signal.shape
     if min(signal.shape) < 3:
@@ -458,6 +412,7 @@ def range_doppler_map(
     return r, v, 20 * np.log10(np.abs(spectrum[:, : samples // 2]) + 1e-12)
 
 
+@checked
 def occupied_cells(power: ArrayLike, drop: float = 10.0) -> tuple[int, int]:
     """Return the number of cells that an echo occupies in range and in range rate.
 
@@ -473,21 +428,17 @@ def occupied_cells(power: ArrayLike, drop: float = 10.0) -> tuple[int, int]:
     ranges, rates : int
         Columns and rows that hold such a cell.
 
-    Raises
-    ------
-    ValueError
-        If `power` is not one finite matrix with a cell in it, or `drop` not a finite number.
-
     Examples
     --------
     >>> occupied_cells([[-30.0, -9.0], [-30.0, 0.0], [-30.0, -8.0]])
     (1, 3)
     """
     power = _cells(power)
-    strong = power >= power.max() - _checks.one_number("drop", drop)
+    strong = power >= power.max() - drop
     return int(strong.any(axis=0).sum()), int(strong.any(axis=1).sum())
 
 
+@checked
 def strongest_cell(r: ArrayLike, v: ArrayLike, power: ArrayLike) -> tuple[float, float]:
     """Return range and range rate of the highest peak of a range-Doppler map.
 
@@ -504,11 +455,6 @@ def strongest_cell(r: ArrayLike, v: ArrayLike, power: ArrayLike) -> tuple[float,
     -------
     r, v : float
         In m and m/s.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit or a value is not finite.
 
     Examples
     --------

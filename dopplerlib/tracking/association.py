@@ -3,9 +3,11 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, IntArray
 
 
+@checked
 @_checks.quiet
 def nearest_neighbor(distance: ArrayLike, accept: ArrayLike | None = None) -> IntArray:
     """Return the nearest neighbor among the accepted detections.
@@ -22,11 +24,6 @@ def nearest_neighbor(distance: ArrayLike, accept: ArrayLike | None = None) -> In
     -------
     ndarray of int, shape (...)
         Index of the detection, -1 where there is none.
-
-    Raises
-    ------
-    ValueError
-        If `distance` is not made of real numbers or `accept` does not fit it.
 
     Notes
     -----
@@ -52,6 +49,7 @@ def nearest_neighbor(distance: ArrayLike, accept: ArrayLike | None = None) -> In
     return np.where(np.isfinite(distance.min(axis=-1)), nearest, -1)
 
 
+@checked
 @_checks.quiet
 def greedy_assign(cost: ArrayLike, gate: float) -> IntArray:
     """Return the greedy assignment: the cheapest pair first, then the cheapest of the rest.
@@ -67,11 +65,6 @@ def greedy_assign(cost: ArrayLike, gate: float) -> IntArray:
     -------
     ndarray of int, shape (tracks,)
         Detection of each track, -1 where it has none.
-
-    Raises
-    ------
-    ValueError
-        If `cost` is not a matrix of real numbers, or `gate` is not finite.
 
     Notes
     -----
@@ -94,6 +87,7 @@ def greedy_assign(cost: ArrayLike, gate: float) -> IntArray:
     return assigned
 
 
+@checked
 @_checks.quiet
 def gnn_assign(cost: ArrayLike, gate: float) -> IntArray:
     """Return the global-nearest-neighbor assignment, that of least total cost.
@@ -109,11 +103,6 @@ def gnn_assign(cost: ArrayLike, gate: float) -> IntArray:
     -------
     ndarray of int, shape (tracks,)
         Detection of each track, -1 where it has none.
-
-    Raises
-    ------
-    ValueError
-        If `cost` is not a matrix of real numbers, or `gate` is not finite.
 
     Notes
     -----

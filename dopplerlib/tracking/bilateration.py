@@ -3,12 +3,14 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import AboveZero, checked
 from .._typing import ArrayLike, BoolArray, FloatArray
 
 
+@checked
 @_checks.quiet
 def bilaterate(
-    d1: ArrayLike, d2: ArrayLike, baseline: float
+    d1: ArrayLike, d2: ArrayLike, baseline: AboveZero
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Return the position with y > 0 at given ranges from two radars on the x axis.
 
@@ -30,11 +32,6 @@ def bilaterate(
     valid : ndarray of bool, shape (...)
         Whether the circles meet.
 
-    Raises
-    ------
-    ValueError
-        If `d1` and `d2` do not broadcast, are no real numbers, or `baseline` is not positive.
-
     Notes
     -----
     Åsheim (2015), Eq 5.8. It is called triangulation there; the word means angles, and two
@@ -49,10 +46,9 @@ def bilaterate(
     """
     d1, d2 = _checks.real("d1", d1), _checks.real("d2", d2)
     _checks.check_broadcast("d1", d1.shape, "d2", d2.shape)
-    b = _checks.positive_number("baseline", baseline)
-    x = (d1**2 - d2**2) / (2 * b)
+    x = (d1**2 - d2**2) / (2 * baseline)
     with np.errstate(invalid="ignore"):
         # d2^2 - (x - b/2)^2 in factors: near the baseline the squares cancel, the factors do not.
-        square = (d2 - x + b / 2) * (d2 + x - b / 2)
+        square = (d2 - x + baseline / 2) * (d2 + x - baseline / 2)
         valid = (square >= 0) & (np.minimum(d1, d2) >= 0)
         return x, np.where(valid, np.sqrt(np.where(valid, square, np.nan)), np.nan), valid

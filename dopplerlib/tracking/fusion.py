@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from ..estimation import covariances, gaussian
 
@@ -147,6 +148,7 @@ def cross_covariance_step(
     return P12
 
 
+@checked
 @_checks.quiet
 def covariance_intersection(
     x1: ArrayLike, P1: ArrayLike, x2: ArrayLike, P2: ArrayLike, w: ArrayLike | None = None
@@ -169,12 +171,6 @@ def covariance_intersection(
     P : ndarray, shape (..., n, n)
         Not smaller than the true covariance, whatever the errors have in common, provided that
         neither `P1` nor `P2` is.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite, `P1` or `P2` is not a covariance (it may be
-        singular), or `w` is not from 0 to 1.
 
     Notes
     -----
@@ -213,6 +209,7 @@ def covariance_intersection(
     return x, P
 
 
+@checked
 @_checks.quiet
 def fuse_measurements(
     z1: ArrayLike, R1: ArrayLike, z2: ArrayLike, R2: ArrayLike
@@ -232,11 +229,6 @@ def fuse_measurements(
     R : ndarray, shape (..., m, m)
         For one Kalman filter behind both sensors: it does as well as one that takes both
         measurements.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite, or `R1` or `R2` is not positive definite.
 
     Notes
     -----

@@ -3,11 +3,13 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import Count, Probability, checked
 from .._typing import ArrayLike, BoolArray
 
 
+@checked
 @_checks.quiet
-def chi2_gate(nis: ArrayLike, m: int, gate_probability: float) -> BoolArray:
+def chi2_gate(nis: ArrayLike, m: Count, gate_probability: Probability) -> BoolArray:
     """Return whether measurements are inside the chi-square gate of a probability.
 
     Parameters
@@ -24,12 +26,6 @@ def chi2_gate(nis: ArrayLike, m: int, gate_probability: float) -> BoolArray:
     ndarray of bool, shape (...)
         False where `nis` is NaN.
 
-    Raises
-    ------
-    ValueError
-        If `nis` is not made of real numbers, `m` is not a positive whole number, or
-        `gate_probability` is not between 0 and 1.
-
     Notes
     -----
     Bar-Shalom, Li, Kirubarajan (2001): the gate is an ellipsoid, the quantile of the
@@ -43,10 +39,10 @@ def chi2_gate(nis: ArrayLike, m: int, gate_probability: float) -> BoolArray:
     from scipy.special import chdtri  # here: it takes longer to load than all the rest
 
     nis = _checks.real("nis", nis)
-    m = _checks.whole_number("m", m)
-    return nis <= chdtri(m, 1 - _checks.probability("gate_probability", gate_probability))
+    return nis <= chdtri(m, 1 - gate_probability)
 
 
+@checked
 @_checks.quiet
 def fixed_box_gate(innovation: ArrayLike, half_widths: ArrayLike) -> BoolArray:
     """Return whether innovations are inside a box of fixed size.
@@ -62,11 +58,6 @@ def fixed_box_gate(innovation: ArrayLike, half_widths: ArrayLike) -> BoolArray:
     -------
     ndarray of bool, shape (...)
         False where a component is NaN.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, or a half-width is not positive.
 
     Notes
     -----

@@ -1,11 +1,16 @@
 """Track management: tentative, confirmed and deleted tracks (M of N)."""
 
+from functools import partial
+from typing import Annotated, Literal
+
 from .. import _checks
+from .._hints import Count, Index, checked
 from .._records import record
 
 TENTATIVE, CONFIRMED, DELETED = "tentative", "confirmed", "deleted"
 
 
+@checked
 @record
 class TrackLife:
     """Status and detection history of a track.
@@ -20,26 +25,15 @@ class TrackLife:
         Number of scans since the detection that started it, which counts as one.
     misses : int
         Number of scans in a row without a detection.
-
-    Raises
-    ------
-    ValueError
-        If a field is of another kind.
     """
 
-    status: str
-    recent: tuple
-    age: int
-    misses: int
-
-    def __post_init__(self):
-        """Check the fields."""
-        _checks.one_of("status", self.status, (TENTATIVE, CONFIRMED, DELETED))
-        _checks.some_of("recent", self.recent, (True, False))
-        _checks.whole_number("age", self.age)
-        _checks.whole_number("misses", self.misses, least=0)
+    status: Literal["tentative", "confirmed", "deleted"]
+    recent: Annotated[tuple[bool, ...], partial(_checks.some_of, choices=(True, False))]
+    age: Count
+    misses: Index
 
 
+@checked
 @record
 class TrackManager:
     """Rules for the confirmation and deletion of tracks.
@@ -51,11 +45,6 @@ class TrackManager:
         ("M of N"). It is deleted when it is `window` scans old and still not confirmed.
     delete_after : int
         Number of scans in a row without a detection after which a confirmed track is deleted.
-
-    Raises
-    ------
-    ValueError
-        If a number is not whole and positive, or `hits` is larger than `window`.
 
     Notes
     -----
@@ -74,15 +63,12 @@ class TrackManager:
     deleted
     """
 
-    hits: int
-    window: int
-    delete_after: int
+    hits: Count
+    window: Count
+    delete_after: Count
 
     def __post_init__(self):
         """Check the rules."""
-        for name in ("hits", "window", "delete_after"):
-            value = _checks.whole_number(name, getattr(self, name))
-            object.__setattr__(self, name, value)
         if self.hits > self.window:
             raise ValueError(f"hits must be at most window = {self.window}, got {self.hits}")
 
@@ -96,6 +82,7 @@ class TrackManager:
         status = CONFIRMED if self.hits == 1 else TENTATIVE
         return TrackLife(status, recent=(True,), age=1, misses=0)
 
+    @checked
     def advance(self, life: TrackLife, detected: bool) -> TrackLife:
         """Return the status of a track after one more scan.
 
@@ -110,14 +97,7 @@ class TrackManager:
         -------
         TrackLife
             Once deleted, a track stays so.
-
-        Raises
-        ------
-        ValueError
-            If `life` is no TrackLife, or `detected` no boolean.
         """
-        _checks.instance("life", life, TrackLife)
-        detected = _checks.one_boolean("detected", detected)
         if life.status == DELETED:
             return life
         recent = (*life.recent, detected)[-self.window :]
