@@ -49,7 +49,6 @@ CALLS = {
     linear_kalman.kf_predict: {"x": x, "P": P, "F": F, "Q": Q},
     linear_kalman.kf_update: {"x": x, "P": P, "z": z[0], "H": H, "R": R},
     linear_kalman.kf: {"z": z, "F": F, "Q": Q, "H": H, "R": R, "x0": x, "P0": P},
-    extended_update.ekf_innovation: {"x": x, "P": P, "z": z[0], "R": R, "wrap": (0,)} | nonlinear,
     extended_update.ekf_update: {"x": x, "P": P, "z": z[0], "R": R, "wrap": (0,), "accept": True}
     | nonlinear,
     nonlinear_kalman.ekf_records: {

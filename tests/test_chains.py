@@ -23,7 +23,6 @@ from dopplerlib import (
     rts_smooth,
     steady_state_gain,
 )
-from dopplerlib.estimation.extended_update import ekf_innovation
 from dopplerlib.estimation.radial_velocity import radial_velocity_terms, radial_velocity_update
 from dopplerlib.model.motion import (
     cwna_process_noise,
@@ -67,7 +66,6 @@ def everything_takes(x, P, F, Q, H, R):
     yield kf_predict(x, P, F, Q)[1]
     yield kf_update(x, P, z, H, R)[1]
     yield kf_update(x, P, z, H, R)[3]
-    yield ekf_innovation(x, P, z, *nonlinear, R)[1]
     yield ekf_update(x, P, z, *nonlinear, R)[1]
     yield kf([z] * 3, F, Q, H, R, x, P).P
     models = [ImmModel(F, noise, H, R) for noise in (Q, 9 * Q)]

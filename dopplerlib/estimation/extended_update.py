@@ -11,53 +11,6 @@ from . import gaussian
 
 
 @_checks.quiet
-def ekf_innovation(
-    x: ArrayLike,
-    P: ArrayLike,
-    z: ArrayLike,
-    h: Callable[..., Any],
-    H: Callable[..., Any],
-    R: ArrayLike,
-    wrap: Iterable[int] = (),
-) -> tuple[FloatArray, FloatArray]:
-    """Return the innovation of a nonlinear measurement and its covariance, for a gate.
-
-    Parameters
-    ----------
-    x, P, z, h, H, R, wrap
-        See `ekf_update`.
-
-    Returns
-    -------
-    innovation : ndarray, shape (..., m)
-        NaN where `z` is NaN.
-    S : ndarray, shape (..., m, m)
-
-    Raises
-    ------
-    ValueError
-        See `ekf_update`.
-
-    Notes
-    -----
-    Bar-Shalom, Li, Kirubarajan (2001), Sec 10.3.
-
-    Examples
-    --------
-    >>> innovation, S = ekf_innovation(
-    ...     [2.0], [[1.0]], [5.0], lambda x: x**2, lambda x: 2 * x[..., None], [[4.0]]
-    ... )
-    >>> innovation.tolist(), S.tolist()
-    ([1.0], [[20.0]])
-    """
-    x, P, z, R = _checked(x, P, z, R)
-    innovation, J = linearized(x, z, h, H, wrap)
-    S = gaussian.gain(P, J, R)[2]
-    _checks.estimates("x, P, h, H, R", S)
-    return innovation, S
-
-
-@_checks.quiet
 def ekf_update(
     x: ArrayLike,
     P: ArrayLike,
@@ -123,7 +76,10 @@ def ekf_update(
     >>> x.round(3).tolist(), P.round(3).tolist()
     ([[2.2], [2.0]], [[[0.2]], [[1.0]]])
     """
-    x, P, z, R = _checked(x, P, z, R)
+    x = _checks.finite("x", x, (None,))
+    P = _checks.covariance("P", P, x.shape[-1], definite=False)
+    z = _checks.measured("z", z, (None,))
+    R = _checks.covariance("R", R, z.shape[-1])
     accept = _checks.booleans("accept", True if accept is None else accept)
     _checks.check_leading(x=(x, 1), P=(P, 2), z=(z, 1), R=(R, 2), accept=(accept, 0))
     innovation, J = linearized(x, z, h, H, wrap)
@@ -178,12 +134,3 @@ def wrapped(difference: FloatArray, wrap: Iterable[int]) -> FloatArray:
     for i in wrap:
         difference[..., i] = (difference[..., i] + np.pi) % (2 * np.pi) - np.pi
     return difference
-
-
-def _checked(x, P, z, R):
-    x = _checks.finite("x", x, (None,))
-    P = _checks.covariance("P", P, x.shape[-1], definite=False)
-    z = _checks.measured("z", z, (None,))
-    R = _checks.covariance("R", R, z.shape[-1])
-    _checks.check_leading(x=(x, 1), P=(P, 2), z=(z, 1), R=(R, 2))
-    return x, P, z, R

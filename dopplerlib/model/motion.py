@@ -205,42 +205,6 @@ def cwnj_process_noise(
     return _white_noise(T, q, 3, dim, order)
 
 
-def velocity_step_noise(
-    w: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
-) -> FloatArray:
-    """Return the process noise of velocities that change by a random step in every interval.
-
-    Parameters
-    ----------
-    w : float
-        Standard deviation of the velocity step in m/s.
-    dim, order
-        See `ncv_transition`.
-
-    Returns
-    -------
-    ndarray, shape (2 dim, 2 dim)
-        Diagonal, of rank `dim`.
-
-    Raises
-    ------
-    ValueError
-        If `w` or `dim` is not positive, or `order` is not one of the two.
-
-    Notes
-    -----
-    Macaveiu et al. (2013), Eq 3. It belongs to one sampling interval: with another one, the same
-    `w` stands for another target.
-
-    Examples
-    --------
-    >>> np.diag(velocity_step_noise(0.5, dim=2)).tolist()
-    [0.0, 0.25, 0.0, 0.25]
-    """
-    w = _checks.one_number("w", w, _checks.deviation)
-    return _all_axes(np.diag([0.0, w * w]), dim, order)
-
-
 def _interval(T):
     T = _checks.one_number("T", T, _checks.moderate)
     if T < 0:

@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 
 from .. import _checks
-from .._hints import Positive, checked, up_to
+from .._hints import Positive, Real, checked, up_to
 from .._typing import ArrayLike, BoolArray, ComplexArray
 from ._bins import about_mean, in_range
 from .validity import known_samples
@@ -84,7 +84,7 @@ def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
 
 
 @checked
-def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexArray:
+def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: Real) -> ComplexArray:
     """Add the I/Q imbalance of a mixer to IQ samples.
 
     Parameters
@@ -100,7 +100,7 @@ def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexA
     -------
     ndarray of complex, shape (..., n)
         I and g (Q cos phi + I sin phi): a circle becomes an ellipse, and beside every tone a
-        mirror image appears at the negative frequency, see `image_rejection`.
+        mirror image appears at the negative frequency.
 
     Examples
     --------
@@ -108,40 +108,12 @@ def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: float) -> ComplexA
     [(1+0.5j), 0.866j]
     """
     x = _checks.finite_complex("x", x, (None,))
-    g, phi = _imbalance(gain_db, phase_deg)
+    g = 10 ** (_checks.one_number("gain_db", gain_db, _checks.decibels) / 20)
+    phi = np.radians(phase_deg)
     with np.errstate(all="ignore"):
         x = x.real + 1j * g * (x.imag * np.cos(phi) + x.real * np.sin(phi))
     _checks.estimates("x, gain_db", x, what="samples")
     return x
-
-
-def image_rejection(gain_db: float, phase_deg: float) -> float:
-    """Return the ratio of the power of a tone to that of its image.
-
-    Parameters
-    ----------
-    gain_db, phase_deg : float
-        See `add_iq_imbalance`.
-
-    Returns
-    -------
-    float
-        Ratio of powers, not in dB; infinite for a mixer that is ideal to rounding.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite.
-
-    Examples
-    --------
-    >>> round(float(10 * np.log10(image_rejection(1.0, 5.0))), 1)
-    22.8
-    """
-    g, phi = _imbalance(gain_db, phase_deg)
-    kept, mirrored = np.abs(1 + g * np.exp(1j * phi)), np.abs(1 - g * np.exp(1j * phi))
-    with np.errstate(divide="ignore", over="ignore"):
-        return float((kept / mirrored) ** 2)
 
 
 def correct_iq_imbalance(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
@@ -266,9 +238,3 @@ def _moments(x, valid):
         for product in (x.real**2, x.real * x.imag, x.imag**2)
     )
     return ii, iq, qq, ii * qq - iq**2
-
-
-def _imbalance(gain_db, phase_deg):
-    gain_db = _checks.one_number("gain_db", gain_db, _checks.decibels)
-    phase_deg = _checks.one_number("phase_deg", phase_deg, _checks.moderate)
-    return 10 ** (gain_db / 20), np.radians(phase_deg)

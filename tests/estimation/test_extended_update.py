@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import kf_update, nis
-from dopplerlib.estimation.extended_update import ekf_innovation, ekf_update
+from dopplerlib.estimation.extended_update import ekf_update
 from dopplerlib.model.polar_radar import polar_radar_h, polar_radar_jacobian
 
 RNG = np.random.default_rng(12)
@@ -29,13 +29,6 @@ def test_it_is_the_linear_update_for_a_linear_measurement():
         ekf_update(x, P, z, linear_h, linear_H, R), kf_update(x, P, z, LINEAR, R), strict=True
     ):
         np.testing.assert_allclose(got, np.broadcast_to(want, got.shape), rtol=1e-11, atol=1e-12)
-
-
-def test_the_innovation_alone_is_that_of_the_update():
-    innovation, S = ekf_innovation(x, P, z, linear_h, linear_H, R)
-    _, _, expected, S_expected = ekf_update(x, P, z, linear_h, linear_H, R)
-    np.testing.assert_array_equal(innovation, expected)
-    np.testing.assert_array_equal(S, S_expected)
 
 
 def test_refused_and_missing_measurements_leave_the_prediction():

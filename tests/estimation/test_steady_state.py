@@ -5,7 +5,7 @@ import pytest
 
 from dopplerlib import kf
 from dopplerlib.estimation.steady_state import steady_state_gain, steady_state_lag
-from dopplerlib.model.motion import ncv_transition, velocity_step_noise
+from dopplerlib.model.motion import ncv_transition
 
 T = 0.1
 F, H = ncv_transition(T, dim=1), np.array([[1.0, 0.0]])
@@ -29,7 +29,7 @@ def test_gain_of_position_only_tracking_is_that_of_kalata(sigma_a):
 
 
 def test_the_covariance_is_that_of_a_long_run():
-    Q, H, R = velocity_step_noise(0.01, dim=1), np.eye(2), np.diag([0.25, 1.0])
+    Q, H, R = np.diag([0.0, 0.01**2]), np.eye(2), np.diag([0.25, 1.0])
     K, P = steady_state_gain(F, Q, H, R)
     track = kf(np.zeros((3000, 2)), F, Q, H, R, np.zeros(2), R)
     # The slowest error decays as exp(-0.01 k).
@@ -48,7 +48,7 @@ def test_lag_of_position_only_tracking_is_that_of_the_alpha_beta_filter(alpha, b
 
 
 def test_a_filter_without_noise_trails_an_accelerating_target_by_the_lag():
-    a, Q, R = 2.0, velocity_step_noise(0.05, dim=1), np.diag([0.25, 1.0])
+    a, Q, R = 2.0, np.diag([0.0, 0.05**2]), np.diag([0.25, 1.0])
     time = np.arange(2000) * T
     truth = np.stack([a * time**2 / 2, a * time], axis=-1)
     K, _ = steady_state_gain(F, Q, np.eye(2), R)

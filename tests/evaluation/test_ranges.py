@@ -38,7 +38,6 @@ from dopplerlib.model.motion import (
     cwnj_process_noise,
     nca_transition,
     ncv_transition,
-    velocity_step_noise,
 )  # fmt: skip
 from dopplerlib.model.polar_radar import polar_position, polar_radar_h, polar_radar_jacobian
 from dopplerlib.model.range_rate import range_rate, range_rate_jacobian
@@ -52,7 +51,7 @@ from dopplerlib.model.twin import planar_twin
 from dopplerlib.replication.claims import Claim
 from dopplerlib.replication.evidence import Draws
 from dopplerlib.replication.verdicts import judge
-from dopplerlib.signal.impairments import add_iq_imbalance, image_rejection, quantize
+from dopplerlib.signal.impairments import add_iq_imbalance, quantize
 from dopplerlib.signal.synthesis import iq_from_geometry, iq_from_velocity, tone, velocity_profile
 
 RING = RadarArray.ring(6, 0.2)
@@ -89,7 +88,6 @@ SCALED = {
     "wna T": lambda s: cwna_process_noise(s, 1.0),
     "wna q": lambda s: cwna_process_noise(1e10, s),
     "wnj": lambda s: cwnj_process_noise(s, 1.0),
-    "velocity_step": lambda s: velocity_step_noise(s),
     "constant_velocity": lambda s: constant_velocity(s, 0.4)[1],
     "polar h": lambda s: polar_radar_h(s * PLANE),
     "polar jacobian": lambda s: polar_radar_jacobian(PLANE * [1, s, 1, s]),
@@ -123,7 +121,6 @@ SCALED = {
     "quantile_interval": lambda s: [quantile_interval([-s, s]).value],
     "quantize": lambda s: quantize([s, 1.0], 8, 1.0),
     "quantize full": lambda s: quantize([1.0, 1.0], 8, s),
-    "image_rejection": lambda s: image_rejection(s, 1.0),
     "add_iq_imbalance": lambda s: add_iq_imbalance([1.0, 1j], s, 1.0),
     "velocity_profile": lambda s: velocity_profile([0.0, s], 1.0, [(0, 1, s)]),
     "tone f": lambda s: tone(s, 1e3, 4, None, rng=rng()),

@@ -9,7 +9,6 @@ from dopplerlib.model.motion import (
     cwnj_process_noise,
     nca_transition,
     ncv_transition,
-    velocity_step_noise,
 )
 
 T, q = 0.3, 0.7
@@ -49,12 +48,6 @@ def test_in_no_time_nothing_moves_and_nothing_becomes_uncertain(n, transition, n
     np.testing.assert_array_equal(noise(0.0, q, 2, order), np.zeros((2 * n, 2 * n)))
 
 
-def test_noise_of_a_velocity_step_depends_on_how_often_it_is_applied():
-    F, Q = ncv_transition(T), velocity_step_noise(0.1)
-    assert (F @ Q @ F.T + Q)[1, 1] == pytest.approx(2 * Q[1, 1])
-    np.testing.assert_array_equal(Q, np.diag([0, 0.1**2, 0, 0.1**2]))
-
-
 @pytest.mark.parametrize("n", [2, 3])
 def test_the_orders_hold_the_same_numbers_at_other_places(n):
     transition, noise = {2: FAMILIES[0][1:], 3: FAMILIES[1][1:]}[n]
@@ -62,7 +55,6 @@ def test_the_orders_hold_the_same_numbers_at_other_places(n):
     places = np.arange(n * dim).reshape(dim, n).T.ravel()  # of [x, y, v_x, ...] in [x, v_x, ...]
     for make in (lambda order: transition(T, dim, order), lambda order: noise(T, q, dim, order)):
         np.testing.assert_array_equal(make("derivative"), make("axis")[np.ix_(places, places)])
-    np.testing.assert_array_equal(np.diag(velocity_step_noise(2.0, 2, "derivative")), [0, 0, 4, 4])
 
 
 @pytest.mark.parametrize(
@@ -76,7 +68,6 @@ def test_the_orders_hold_the_same_numbers_at_other_places(n):
         (cwna_process_noise, (-1.0, 1.0), "T"),
         (cwnj_process_noise, (np.nan, 1.0), "T"),
         (cwnj_process_noise, ([T], 1.0), "T"),
-        (velocity_step_noise, (0.0,), "w"),
     ],
 )
 def test_an_impossible_setting_is_refused_by_name(function, arguments, name):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib import gnn_assign, nees, rts_smooth
-from dopplerlib.estimation.extended_update import ekf_innovation
+from dopplerlib.estimation.extended_update import ekf_update
 from dopplerlib.model.motion import ncv_transition
 from dopplerlib.model.polar_radar import polar_radar_h
 from dopplerlib.systems import macaveiu2013 as paper
@@ -293,7 +293,7 @@ def test_the_distance_of_a_track_and_a_detection_is_the_squared_innovation_in_it
         predicted = F @ P @ F.T + S.E_x
         for track, detection in np.ndindex(2, 2):
             x = F @ out.x[0, track, k - 1]
-            nu, covariance = ekf_innovation(
+            *_, nu, covariance = ekf_update(
                 x, predicted, H @ z[detection][0, k], lambda x: x @ H.T, lambda x: H, R
             )
             nis = nu @ np.linalg.solve(covariance, nu)
