@@ -19,23 +19,11 @@ def replacing(*paths):
     replaced keeps its mode and, where the process may give it away, its owner. The ends of the
     names stay, since SigMF tells by them what a file is.
 
-    Parameters
-    ----------
-    *paths : path-like
-        Files to write, each an ordinary file or none yet.
-
-    Yields
-    ------
-    list of Path
-        Empty files with names of their own, to be written to.
-
-    Raises
-    ------
-    ValueError
-        If a path leads to something that is no ordinary file, or to one that is read-only; or if
-        its folder does not exist or may not be written to.
-    OSError
-        With the path, if writing fails, for instance on a full disk.
+    *paths: Files to write, each an ordinary file or none yet.
+    Yields: Empty files with names of their own, to be written to.
+    Raises ValueError if a path leads to something that is no ordinary file, or to one that is
+        read-only; or if its folder does not exist or may not be written to.
+    Raises OSError with the path, if writing fails, for instance on a full disk.
     """
     paths = [file_to_write(path) for path in paths]
     targets = [_target(path) for path in paths]

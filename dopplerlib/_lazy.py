@@ -7,14 +7,9 @@ from importlib import import_module
 def attach(package, path, home=()):
     """Return the `__getattr__` and `__dir__` of a package that loads its modules by itself.
 
-    Parameters
-    ----------
-    package : str
-        Its `__name__`.
-    path : list of str
-        Its `__path__`. Every module there without a leading underscore is an attribute.
-    home : dict of str to str, optional
-        In which module of the package a name of its own stands.
+    package: Its `__name__`.
+    path: Its `__path__`. Every module there without a leading underscore is an attribute.
+    home: In which module of the package a name of its own stands.
     """
 
     @cache
@@ -44,10 +39,7 @@ def by_name(modules):
 def require(library, extra):
     """Raise unless a library that an extra of this one brings is installed.
 
-    Raises
-    ------
-    ModuleNotFoundError
-        With the command that installs it.
+    Raises ModuleNotFoundError with the command that installs it.
     """
     try:
         import_module(library)

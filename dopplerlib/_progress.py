@@ -7,19 +7,10 @@ import time
 def progress_bar(items, label, wanted=True):
     """Yield items and show on standard error how many are done and how long the rest takes.
 
-    Parameters
-    ----------
-    items : sequence
-        Each of them should take about the same time.
-    label : str
-        What stands before the bar.
-    wanted : bool
-        Whether there is a bar.
-
-    Yields
-    ------
-    object
-        The items.
+    items: Each of them should take about the same time.
+    label: What stands before the bar.
+    wanted: Whether there is a bar.
+    Yields: The items.
     """
     start = time.monotonic()
     for done, item in enumerate(items):

@@ -12,18 +12,11 @@ from reprlib import repr as short  # of what may be long or deep
 def tables(path, name="path"):
     """Give the tables of a TOML file; in every ValueError inside, the file's name comes first.
 
-    Parameters
-    ----------
-    path : path-like or Traversable
-        A file on disk, or something with `is_file` and `read_bytes`, such as a file of a package.
+    path: A file on disk, or something with `is_file` and `read_bytes`, such as a file of a package.
         In UTF-8, with or without a byte order mark.
-    name : str
-        Of the argument.
-
-    Raises
-    ------
-    ValueError
-        If `path` is no path, is not an ordinary file that can be read, or does not hold TOML.
+    name: Of the argument.
+    Raises ValueError if `path` is no path, is not an ordinary file that can be read, or does not
+        hold TOML.
     """
     content = _content(path, name)
     try:
@@ -56,16 +49,10 @@ def check_names(where, table, needed, others=()):
 def entries(file, name, cls, check):
     """Return one record for each ``[[name]]`` of a file, whose ids differ.
 
-    Parameters
-    ----------
-    file : dict
-        The tables, nothing but a list under `name`.
-    name : str
-        What an entry is called.
-    cls : type
-        Record whose fields the entries of a table are; one of them is `id`.
-    check : callable
-        ``check(where, made)`` raises unless the fields of a record are right.
+    file: The tables, nothing but a list under `name`.
+    name: What an entry is called.
+    cls: Record whose fields the entries of a table are; one of them is `id`.
+    check: ``check(where, made)`` raises unless the fields of a record are right.
     """
     check_names("the file", file, (), (name,))
     found = file.get(name, [])

@@ -13,28 +13,15 @@ def measured(innovation, S, record=False, of=""):
     innovation becomes 0, and the row and column of S those of a unit matrix. Then the quadratic
     form is that of the components that are there, and so is each of their Cholesky factors.
 
-    Parameters
-    ----------
-    innovation : array_like, shape (..., m)
-        In a record (..., K, m).
-    S : array_like, shape (..., m, m)
-        Covariances; what belongs to a missing component does not matter. In a record
+    innovation (..., m): In a record (..., K, m).
+    S (..., m, m): Covariances; what belongs to a missing component does not matter. In a record
         (..., K, m, m).
-    record : bool
-        Whether there is an axis of time, which S must have too.
-    of : str
-        Prefix of both names in an error.
-
-    Returns
-    -------
-    innovation, S : ndarray
-    there : ndarray of bool, shape (..., m)
-        Where a component was measured.
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit, an innovation is infinite, or S is no covariance of what is there.
+    record: Whether there is an axis of time, which S must have too.
+    of: Prefix of both names in an error.
+    Returns innovation, S
+        there (..., m): Where a component was measured.
+    Raises ValueError if the shapes do not fit, an innovation is infinite, or S is no covariance of
+        what is there.
     """
     names = f"{of}innovation", f"{of}S"
     innovation = _checks.measured(names[0], innovation, (None, None) if record else (None,))
@@ -55,11 +42,8 @@ def measured(innovation, S, record=False, of=""):
 def of_track(track):
     """Return innovations (..., K, m), S and where there is a value, of a track that has them.
 
-    Raises
-    ------
-    ValueError
-        If it has none, they are refused by `measured`, or a record holds no measurement at all: a
-        test of which would be passed by a filter that has failed.
+    Raises ValueError if it has none, they are refused by `measured`, or a record holds no
+        measurement at all: a test of which would be passed by a filter that has failed.
     """
     _checks.instance("track", track, Track)
     for name in ("innovation", "S"):
@@ -115,16 +99,10 @@ def chi2_tail(statistic, dof):
 def ljung_box(white, there, lags, least=None):
     """Return the fields of a `Whiteness` for values of variance 1; nothing is checked.
 
-    Parameters
-    ----------
-    white : ndarray, shape (..., K, m)
-        Zero where a value is missing.
-    there : ndarray of bool, shape (..., K, m)
-        Which values are not missing.
-    lags : int
-        Number of lags.
-    least : int
-        Components with fewer values than that are left out; more than `lags` if None.
+    white (..., K, m): Zero where a value is missing.
+    there (..., K, m): Which values are not missing.
+    lags: Number of lags.
+    least: Components with fewer values than that are left out; more than `lags` if None.
     """
     samples = white.shape[-2]
     n = there.sum(axis=-2)

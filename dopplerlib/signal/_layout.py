@@ -34,17 +34,10 @@ def analytic(x):
 def turning(x, valid, fs):
     """Tell for each sensor whether I and Q turn together.
 
-    Parameters
-    ----------
-    x : ndarray of complex, shape (S, n)
-    valid : ndarray of bool, shape (S, n)
-    fs : float
-
-    Returns
-    -------
-    ndarray, shape (S,)
-        Share of the windows with a strong line in which such a line turns; NaN if there are too
-        few to tell.
+    x (S, n)
+    valid (S, n)
+    Returns (S,): Share of the windows with a strong line in which such a line turns; NaN if there
+        are too few to tell.
 
     Notes
     -----
