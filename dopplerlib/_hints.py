@@ -150,7 +150,8 @@ _RAISES = """
 Raises
 ------
 ValueError
-    If an argument is not of the kind described: "<argument> must <expectation>, got <value>".
+    If an argument is not of the kind described, or leads out of the range of a float: "<argument>
+    must <expectation>, got <value>".
 """
 _COLLECTING = inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD
 _ARRAY_LIKE = frozenset(get_args(ArrayLike))  # a union, of which a larger union keeps the parts
@@ -205,7 +206,7 @@ def _either(parts):
         if value is None and NoneType in parts:
             return None
         if words and (isinstance(value, str) or not rest):
-            return _checks.one_of(name, value, words)
+            return _checks.one_of(name, value, (None, *words) if NoneType in parts else words)
         for check in rest[:-1]:
             try:
                 return check(name, value)

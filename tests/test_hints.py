@@ -141,7 +141,8 @@ def test_a_docstring_with_parameters_says_what_is_raised():
     head = "Do.\n\n    Parameters\n    ----------\n    a : int\n        What.\n"
     tail = "\n    Notes\n    -----\n    None.\n"
     raises = "\n    Raises\n    ------\n    ValueError\n        If an argument is not of the kind "
-    raises += 'described: "<argument> must <expectation>, got <value>".\n'
+    raises += 'described, or leads out of the range of a float: "<argument>\n        must '
+    raises += '<expectation>, got <value>".\n'
     assert documented(head + tail) == head + raises + tail
     assert documented(head + "    ").rstrip() == (head + raises).rstrip()
     told = head + "\n    Raises\n    ------\n    ValueError\n        If it rains.\n"

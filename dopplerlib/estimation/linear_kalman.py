@@ -3,11 +3,13 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from . import gaussian, models, recursion
 from .track import Track
 
 
+@checked
 @_checks.quiet
 def kf_predict(
     x: ArrayLike, P: ArrayLike, F: ArrayLike, Q: ArrayLike
@@ -28,12 +30,6 @@ def kf_predict(
     -------
     x : ndarray, shape (..., n)
     P : ndarray, shape (..., n, n)
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite, also of what comes out, or `P` or `Q` is not a
-        covariance (it may be singular).
 
     Notes
     -----
@@ -59,6 +55,7 @@ def kf_predict(
     return x, P
 
 
+@checked
 @_checks.quiet
 def kf_update(
     x: ArrayLike, P: ArrayLike, z: ArrayLike, H: ArrayLike, R: ArrayLike
@@ -88,13 +85,6 @@ def kf_update(
     S : ndarray, shape (..., m, m)
         Of all components, also of those that are missing.
 
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite (but for a NaN in `z`), also of what comes out,
-        `P` is not a covariance (it may be singular), `R` is not positive definite, or so small
-        that S is singular to rounding.
-
     Notes
     -----
     Mittermaier et al. (2016), Table 1; the covariance is (I - K H) P (I - K H)' + K R K' of Bucy
@@ -122,6 +112,7 @@ def kf_update(
     return x, P, innovation, S
 
 
+@checked
 @_checks.quiet
 def kf(
     z: ArrayLike,
@@ -157,13 +148,6 @@ def kf(
     Track
         Leading axes are those of `z`. Missing values are treated as by `ekf`: the components that
         are there update alone, and NIS is theirs.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite (but for a NaN in `z`), also of what comes out,
-        `R` is not positive definite, or so small that S is singular to rounding, or `P0` or `Q` is
-        not a covariance (it may be singular).
 
     Notes
     -----

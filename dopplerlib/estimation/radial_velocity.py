@@ -5,6 +5,7 @@ from typing import Literal
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._records import record
 from .._typing import ArrayLike, FloatArray
 from . import covariances, gaussian
@@ -32,6 +33,7 @@ class RadialVelocity:
     predicted: np.ndarray
 
 
+@checked
 @_checks.quiet
 def radial_velocity_terms(
     x: ArrayLike,
@@ -59,12 +61,6 @@ def radial_velocity_terms(
     -------
     RadialVelocity
 
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, a value is not finite, `P` is not a covariance, the position is
-        zero, or `variance` is not one of the two.
-
     Notes
     -----
     Åsheim (2015), Eqs 3.20 to 3.22, after Wang, He and Long (2003), with the printed square root
@@ -86,13 +82,13 @@ def radial_velocity_terms(
         raise ValueError(f"x must hold positions and velocities, got {x.shape[-1]} components")
     P = _checks.covariance("P", P, x.shape[-1], definite=False)
     sigma = _checks.deviation("sigma", sigma)
-    _checks.one_of("variance", variance, ("corrected", "printed"))
     _checks.check_leading(x=(x, 1), P=(P, 2), sigma=(sigma, 0))
     terms = _terms(x, P, sigma, variance)
     _checks.estimates("x, P, sigma", *vars(terms).values(), what="terms")
     return terms
 
 
+@checked
 @_checks.quiet
 def radial_velocity_update(
     x: ArrayLike,
@@ -123,11 +119,6 @@ def radial_velocity_update(
     P : ndarray, shape (..., 2 n, 2 n)
     innovation : ndarray, shape (..., 1)
     S : ndarray, shape (..., 1, 1)
-
-    Raises
-    ------
-    ValueError
-        As `radial_velocity_terms`, or if `z` is infinite.
 
     Notes
     -----

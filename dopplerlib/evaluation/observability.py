@@ -61,6 +61,7 @@ def observable_rank(
     return np.sum(eigenvalue > SINGULAR, axis=-1)
 
 
+@checked
 def rms_bounds(
     P: ArrayLike, x: ArrayLike | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -79,12 +80,6 @@ def rms_bounds(
         In m and m/s.
     range : ndarray, shape (...)
         Along the line from the origin to the target, in m. Only with `x`.
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit, a value is no real number, a variance is negative or NaN, a
-        covariance of two finite variances is not finite, or `x` is not finite or at the origin.
 
     Examples
     --------

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import checked
 from .._records import record
 from .._typing import ArrayLike, FloatArray
 from ._innovations import ljung_box, measured, whiten
@@ -32,6 +33,7 @@ class Whiteness:
     p_value: np.ndarray
 
 
+@checked
 def innovation_mean(innovation: ArrayLike, S: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Return the time average of each innovation, and its standard error for a consistent filter.
 
@@ -48,12 +50,6 @@ def innovation_mean(innovation: ArrayLike, S: ArrayLike) -> tuple[FloatArray, Fl
         Average over the samples that are there; NaN for a component of which none is.
     standard_error : ndarray, shape (..., m)
         Standard deviation of `mean` for independent innovations of covariance `S`.
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit, an innovation is infinite, or `S` is not a covariance (symmetric
-        and positive definite) of the components that are there.
 
     Notes
     -----

@@ -8,6 +8,7 @@ from .._typing import ArrayLike, FloatArray
 from ..estimation import covariances, gaussian
 
 
+@checked
 @_checks.quiet
 def fuse_state_vectors(
     x1: ArrayLike, P1: ArrayLike, x2: ArrayLike, P2: ArrayLike, P12: ArrayLike | None = None
@@ -29,12 +30,6 @@ def fuse_state_vectors(
     -------
     x : ndarray, shape (..., n)
     P : ndarray, shape (..., n, n)
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite, `P1`, `P2`, or both together with `P12`, are
-        not a covariance, or the difference has with `P12` one that is not positive definite.
 
     Notes
     -----
@@ -88,6 +83,7 @@ def _independent(x1, P1, x2, P2):
     return x, P
 
 
+@checked
 @_checks.quiet
 def cross_covariance_step(
     P12: ArrayLike,
@@ -115,12 +111,6 @@ def cross_covariance_step(
     -------
     ndarray, shape (..., n, n)
         (I - K1 H1) (F P12 F' + Q) (I - K2 H2)'.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite, or `Q` is not a covariance (it may be
-        singular).
 
     Notes
     -----

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import _checks
+from .._hints import AboveZero, Probability, checked
 from .._records import record
 from .._typing import ArrayLike
 from ..estimation import covariances, densities, gaussian
@@ -30,6 +31,7 @@ class PdaUpdate:
     weight: np.ndarray
 
 
+@checked
 @_checks.quiet
 def pda_update(
     x: ArrayLike,
@@ -38,9 +40,9 @@ def pda_update(
     H: ArrayLike,
     R: ArrayLike,
     *,
-    detection: float,
-    density: float,
-    gate: float = 0.999,
+    detection: Probability,
+    density: AboveZero,
+    gate: Probability = 0.999,
 ) -> PdaUpdate:
     """Measurement update by probabilistic data association.
 
@@ -69,14 +71,6 @@ def pda_update(
     -------
     PdaUpdate
 
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, a value is not finite (but for a NaN in `z`), also of what comes
-        out, `P` is not a covariance (it may be singular), `R` is not positive definite, or so small
-        that the covariance of an innovation is singular to rounding, a probability is not between 0
-        and 1, or `density` is not positive.
-
     Notes
     -----
     Bar-Shalom, Daum and Huang (2009), the parametric form: false detections are a Poisson process.
@@ -102,8 +96,6 @@ def pda_update(
     z = _checks.detections("z", z, m)
     R = _checks.covariance("R", R, m)
     _checks.check_leading(x=(x, 1), P=(P, 2), z=(z, 2), H=(H, 2), R=(R, 2))
-    detection, gate = _checks.probability("detection", detection), _checks.probability("gate", gate)
-    density = _checks.positive_number("density", density)
 
     K, updated, S = gaussian.gain(P, H, R)
     nu = gaussian.innovation(x[..., None, :], z, H[..., None, :, :])
