@@ -38,7 +38,7 @@ ESTIMATORS: dict[str, Callable[..., FloatArray]] = {
     "Quinn 2": interpolation.quinn2,
     "Aboutanios-Mulgrew": interpolation.aboutanios_mulgrew,
     "maximum likelihood": ml_frequency,
-    "beside a constant": ml_frequency_dc,
+    "ML with DC offset": ml_frequency_dc,
     "Kay": phase.kay,
     "pulse pair": phase.pulse_pair,
 }

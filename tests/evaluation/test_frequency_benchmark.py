@@ -52,7 +52,7 @@ def test_beside_a_constant_the_estimator_attains_the_bound_of_that(saved):
     dc = crlb_frequency_std_dc(f, 1.0, benchmark.SAMPLES, benchmark.FS)
     expected = np.sqrt(np.mean(dc**2)) / crlb_frequency_std(1.0, benchmark.SAMPLES, benchmark.FS)
     for k in range(saved.at(0), len(saved.snr_db)):
-        assert saved.ratio["beside a constant"][k].value == pytest.approx(expected, rel=0.025)
+        assert saved.ratio["ML with DC offset"][k].value == pytest.approx(expected, rel=0.025)
 
 
 def test_no_estimator_is_better_than_the_bound_where_it_has_no_outliers(saved):
