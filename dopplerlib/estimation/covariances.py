@@ -15,19 +15,11 @@ from .._typing import FloatArray
 
 
 def square_root(P: FloatArray) -> FloatArray:
-    """Return square roots of covariances: L with L L' = P to rounding.
+    """Return square roots of covariances P (..., n, n): L with L L' = P to rounding.
 
-    Parameters
-    ----------
-    P : ndarray, shape (..., n, n)
-        Positive semidefinite to rounding: directions with no other spread than rounding, of either
-        sign, have none.
-
-    Returns
-    -------
-    ndarray, shape (..., n, n)
-        Cholesky factors; where one of the matrices is singular, those of the eigenvalues after
-        scaling to a diagonal of ones. NaN where `P` is not finite.
+    Cholesky factors; where one of the matrices is singular, those of the eigenvalues after scaling
+    to a diagonal of ones. Directions with no other spread than rounding, of either sign, have none.
+    NaN where `P` is not finite.
     """
     try:
         return np.linalg.cholesky(P)
@@ -40,18 +32,7 @@ def square_root(P: FloatArray) -> FloatArray:
 
 
 def squared(A: FloatArray, noise: FloatArray | float = 0.0) -> FloatArray:
-    """Return A A' + noise, symmetric.
-
-    Parameters
-    ----------
-    A : ndarray, shape (..., n, k)
-    noise : ndarray, shape (..., n, n), optional
-        Covariances that are added.
-
-    Returns
-    -------
-    ndarray, shape (..., n, n)
-    """
+    """Return A A' + noise, symmetric, of A (..., n, k) and covariances that are added."""
     S = A @ A.mT + noise
     return (S + S.mT) / 2
 
@@ -59,17 +40,8 @@ def squared(A: FloatArray, noise: FloatArray | float = 0.0) -> FloatArray:
 def solve(P: FloatArray, B: FloatArray) -> FloatArray:
     """Return P^-1 B by the pseudo-inverse: directions of no variance contribute nothing.
 
-    Parameters
-    ----------
-    P : ndarray, shape (..., n, n)
-        Covariances.
-    B : ndarray, shape (..., n, k)
-
-    Returns
-    -------
-    ndarray, shape (..., n, k)
-        By the pseudo-inverse after scaling to a diagonal of ones, where `P` is singular to
-        rounding. NaN where `P` is not finite.
+    Where P (..., n, n) is singular to rounding, the pseudo-inverse is that after scaling to a
+    diagonal of ones. NaN where `P` is not finite.
     """
     n = P.shape[-1]
     # The entries of a square of n columns, scaled to a diagonal of ones, are off by n roundings, so
@@ -89,21 +61,9 @@ def solve(P: FloatArray, B: FloatArray) -> FloatArray:
 
 
 def cholesky(S: FloatArray) -> FloatArray:
-    """Return Cholesky factors; NaN where S is not finite.
+    """Return Cholesky factors of innovation covariances H P H' + R; NaN where S is not finite.
 
-    Parameters
-    ----------
-    S : ndarray, shape (..., m, m)
-        Covariances of innovations, H P H' + R.
-
-    Returns
-    -------
-    ndarray, shape (..., m, m)
-
-    Raises
-    ------
-    ValueError
-        If a covariance is singular to rounding.
+    ValueError if one is singular to rounding.
     """
     try:
         return np.linalg.cholesky(S)

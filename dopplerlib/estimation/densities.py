@@ -1,4 +1,8 @@
-"""Densities of Gaussians: quadratic forms such as NIS, likelihoods, mixtures; unchecked."""
+"""Densities of Gaussians: quadratic forms such as NIS, likelihoods, mixtures; unchecked.
+
+Of vectors v (..., m) the components count that are not NaN; a quadratic form is NaN where all are.
+Covariances are S (..., m, m). ValueError if one is singular to rounding.
+"""
 
 import numpy as np
 
@@ -9,25 +13,7 @@ from .covariances import cholesky
 
 @_checks.quiet
 def quadratic_forms(v: FloatArray, S: FloatArray) -> FloatArray:
-    """Return v' S^-1 v of many vectors with one covariance, such as the NIS of all detections.
-
-    Parameters
-    ----------
-    v : ndarray, shape (..., D, m)
-        Vectors; the form is that of the components which are not NaN.
-    S : ndarray, shape (..., m, m)
-        Covariances.
-
-    Returns
-    -------
-    ndarray, shape (..., D)
-        Not negative; NaN where all components are.
-
-    Raises
-    ------
-    ValueError
-        If a covariance is singular to rounding.
-    """
+    """Return v' S^-1 v (..., D) of many vectors v (..., D, m) with one covariance."""
     there = ~np.isnan(v)
     if there.all():
         white = np.linalg.solve(cholesky(S), v.mT)
@@ -37,48 +23,15 @@ def quadratic_forms(v: FloatArray, S: FloatArray) -> FloatArray:
 
 @_checks.quiet
 def quadratic_form(v: FloatArray, S: FloatArray) -> FloatArray:
-    """Return v' S^-1 v of each vector with a covariance of its own, such as NIS.
-
-    Parameters
-    ----------
-    v : ndarray, shape (..., m)
-        Vectors; the form is that of the components which are not NaN.
-    S : ndarray, shape (..., m, m)
-        Covariances.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Not negative; NaN where all components are.
-
-    Raises
-    ------
-    ValueError
-        If a covariance is singular to rounding.
-    """
+    """Return v' S^-1 v (...) of each vector with a covariance of its own, such as NIS."""
     return _form(v, S)[0]
 
 
 @_checks.quiet
 def log_density(v: FloatArray, S: FloatArray) -> FloatArray:
-    """Return the log density of zero-mean Gaussians.
+    """Return the log density (...) of zero-mean Gaussians.
 
-    Parameters
-    ----------
-    v : ndarray, shape (..., m)
-        Vectors; the density is that of the components which are not NaN.
-    S : ndarray, shape (..., m, m)
-        Covariances.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Zero where all components are NaN: a missing measurement favors no model.
-
-    Raises
-    ------
-    ValueError
-        If a covariance is singular to rounding.
+    Zero where all components are NaN: a missing measurement favors no model.
     """
     form, L, there = _form(v, S)
     size = np.sum(there, axis=-1)
@@ -89,21 +42,9 @@ def log_density(v: FloatArray, S: FloatArray) -> FloatArray:
 
 @_checks.quiet
 def mixture(x: FloatArray, P: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return mean and covariance of mixtures.
+    """Return mean and covariance of mixtures of M parts.
 
-    Parameters
-    ----------
-    x : ndarray, shape (..., M, n)
-        Means of the M parts.
-    P : ndarray, shape (..., M, n, n)
-        Their covariances.
-    weight : ndarray, shape (..., M)
-        Their probabilities.
-
-    Returns
-    -------
-    x : ndarray, shape (..., n)
-    P : ndarray, shape (..., n, n)
+    Means x (..., M, n), covariances P (..., M, n, n) and probabilities `weight` (..., M).
     """
     mean = np.sum(weight[..., None] * x, axis=-2)
     off = x - mean[..., None, :]

@@ -96,29 +96,12 @@ def linearized(
     H: Callable[..., Any],
     wrap: Iterable[int] = (),
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the innovation of a nonlinear measurement, and the Jacobian.
+    """Return the innovation (..., m) of a nonlinear measurement, and the Jacobian (..., m, n).
 
-    What comes from the caller is unchecked, what the functions return is not.
-
-    Parameters
-    ----------
-    x : ndarray, shape (..., n)
-        Predicted states, unchecked.
-    z : ndarray, shape (..., m)
-        Measurements, unchecked; NaN where one is missing.
-    h, H, wrap
-        See `ekf_update`.
-
-    Returns
-    -------
-    innovation : ndarray, shape (..., m)
-    J : ndarray, shape (..., m, n)
-
-    Raises
-    ------
-    ValueError
-        If `h` or `H` is no function, returns another shape or a value that is not finite, or `wrap`
-        names a component that the measurement does not have.
+    Predicted states x (..., n) and measurements z (..., m), NaN where one is missing, are
+    unchecked; what the functions return is not. ValueError if `h` or `H` is no function, returns
+    another shape or a value that is not finite, or `wrap` names a component that the measurement
+    does not have.
     """
     m = z.shape[-1]
     wrap = _checks.components("wrap", wrap, m)

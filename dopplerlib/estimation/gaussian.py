@@ -1,8 +1,11 @@
 """Gaussian estimates and linear measurements: the algebra of all filters, unchecked.
 
-Covariances are computed as squares, see `covariances`. Measurements that are missing are NaN in the
-innovation: the others update alone (the marginal likelihood), and where all are missing the
-estimate stays as it was, bit by bit.
+States are x (..., n) with covariances P (..., n, n); they move by F with process noise Q, both
+(..., n, n). Measurements z (..., m) are H x, with H (..., m, n), and noise of covariance R
+(..., m, m). Those that are missing are NaN in z and in the innovation (..., m): the others update
+alone (the marginal likelihood), and where all are missing the estimate stays as it was, bit by bit.
+Covariances are computed as squares, see `covariances`. ValueError if an innovation covariance S is
+singular to rounding.
 """
 
 import numpy as np
@@ -16,42 +19,13 @@ from .covariances import cholesky, singular, solve, square_root, squared
 def predict(
     x: FloatArray, P: FloatArray, F: FloatArray, Q: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Predict state and covariance by a linear motion: F x and F P F' + Q.
-
-    Parameters
-    ----------
-    x : ndarray, shape (..., n)
-        States.
-    P : ndarray, shape (..., n, n)
-        Their covariances.
-    F, Q : ndarray, shape (..., n, n)
-        Transition matrices; covariances of the process noise.
-
-    Returns
-    -------
-    x : ndarray, shape (..., n)
-    P : ndarray, shape (..., n, n)
-    """
+    """Return state and covariance after a linear motion: F x and F P F' + Q."""
     return _times(F, x), squared(F @ square_root(P), Q)
 
 
 @_checks.quiet
 def innovation(x: FloatArray, z: FloatArray, H: FloatArray) -> FloatArray:
-    """Return the innovation z - H x of a linear measurement.
-
-    Parameters
-    ----------
-    x : ndarray, shape (..., n)
-        Predicted states.
-    z : ndarray, shape (..., m)
-        Measurements; NaN where one is missing.
-    H : ndarray, shape (..., m, n)
-        Measurement matrices.
-
-    Returns
-    -------
-    ndarray, shape (..., m)
-    """
+    """Return the innovation z - H x of a linear measurement."""
     return z - _times(H, x)
 
 
@@ -61,30 +35,10 @@ def gain(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the Kalman gain, the updated covariance, and that of the innovation.
 
-    Parameters
-    ----------
-    P : ndarray, shape (..., n, n)
-        Predicted covariances.
-    H : ndarray, shape (..., m, n)
-        Measurement matrices.
-    R : ndarray, shape (..., m, m)
-        Covariances of the measurement noise.
-    there : ndarray of bool, shape (..., m)
-        Which components are measured; all if True.
-
-    Returns
-    -------
-    K : ndarray, shape (..., n, m)
-        P H' S^-1; zero for components that are missing.
-    P : ndarray, shape (..., n, n)
-        In Joseph form: (I - K H) P (I - K H)' + K R K', which holds for any gain.
-    S : ndarray, shape (..., m, m)
-        H P H' + R of all components, also those that are missing.
-
-    Raises
-    ------
-    ValueError
-        If S is singular to rounding.
+    `there` (..., m) says which components are measured. The gain K (..., n, m) is P H' S^-1, zero
+    for components that are missing; the covariance is in Joseph form,
+    (I - K H) P (I - K H)' + K R K', which holds for any gain; S (..., m, m) is H P H' + R of all
+    components, also those that are missing.
 
     Notes
     -----
@@ -99,48 +53,14 @@ def gain(
 def gain_of_root(
     P: FloatArray, L: FloatArray, HL: FloatArray, R: FloatArray, there: BoolArray | bool = True
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the same as `gain` from H L in place of H, as sigma points give it.
-
-    Parameters
-    ----------
-    P, R, there
-        See `gain`.
-    L : ndarray, shape (..., n, n)
-        Square root of `P`, see `square_root`.
-    HL : ndarray, shape (..., m, n)
-        Measurement matrix times `L`.
-
-    Returns
-    -------
-    K, P, S
-        See `gain`.
-
-    Raises
-    ------
-    ValueError
-        If S is singular to rounding.
-    """
+    """Return the same as `gain` from L with L L' = P and from H L, as sigma points give it."""
     K, S, R = _weighed(L, HL, R, there)
     return K, _joseph(P, L - K @ HL, K, R, there), S
 
 
 @_checks.quiet
 def moved(x: FloatArray, K: FloatArray, innovation: FloatArray) -> FloatArray:
-    """Return updated states x + K innovation; missing components add nothing.
-
-    Parameters
-    ----------
-    x : ndarray, shape (..., n)
-        Predicted states.
-    K : ndarray, shape (..., n, m)
-        Gains.
-    innovation : ndarray, shape (..., m)
-        Measured minus predicted measurement; NaN where it is missing.
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-    """
+    """Return updated states x + K innovation; missing components add nothing."""
     return x + _times(K, np.where(np.isnan(innovation), 0.0, innovation))
 
 
@@ -148,28 +68,7 @@ def moved(x: FloatArray, K: FloatArray, innovation: FloatArray) -> FloatArray:
 def update(
     x: FloatArray, P: FloatArray, innovation: FloatArray, H: FloatArray, R: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Update state and covariance by a measurement; return the innovation covariance as well.
-
-    Parameters
-    ----------
-    x : ndarray, shape (..., n)
-        Predicted states.
-    P, H, R
-        See `gain`.
-    innovation : ndarray, shape (..., m)
-        Measured minus predicted measurement; NaN where it is missing.
-
-    Returns
-    -------
-    x : ndarray, shape (..., n)
-    P : ndarray, shape (..., n, n)
-    S : ndarray, shape (..., m, m)
-
-    Raises
-    ------
-    ValueError
-        If S is singular to rounding.
-    """
+    """Return state and covariance after a measurement, from its innovation, and S."""
     K, P, S = gain(P, H, R, ~np.isnan(innovation))
     return moved(x, K, innovation), P, S
 
@@ -185,19 +84,7 @@ def smooth(
 ) -> tuple[FloatArray, FloatArray]:
     """Return a smoothed estimate from the filtered one and the smoothed one after it.
 
-    Parameters
-    ----------
-    x, P : ndarray, shape (..., n) and (..., n, n)
-        Filtered states and covariances.
-    F, Q : ndarray, shape (..., n, n)
-        The step from them to the next ones.
-    x_next, P_next : ndarray, shape (..., n) and (..., n, n)
-        Smoothed states and covariances after the step.
-
-    Returns
-    -------
-    x : ndarray, shape (..., n)
-    P : ndarray, shape (..., n, n)
+    `F` and `Q` are those of the step from x, P to x_next, P_next.
 
     Notes
     -----

@@ -147,25 +147,10 @@ class ImmTrack:
 
 
 def _prepared(name: str, model: ImmModel, z: np.ndarray) -> tuple[Predict, Correct]:
-    """Return the functions by which a model predicts and corrects along a record.
+    """Return the functions by which a model predicts and corrects along z (..., K, m).
 
-    Parameters
-    ----------
-    name : str
-        Name of the model in errors.
-    model : ImmModel
-    z : ndarray, shape (..., K, m)
-        Checked measurements.
-
-    Returns
-    -------
-    predict, correct : callable
-        See `recursion.cycle`.
-
-    Raises
-    ------
-    ValueError
-        If there are not as many matrices or functions as samples.
+    See `recursion.cycle`. `name` is that of the model in errors: ValueError if there are not as
+    many matrices or functions as samples.
     """
     batch, (K, m), n = z.shape[:-2], z.shape[-2:], model.n
     scale = sigma_points.scaling(n)

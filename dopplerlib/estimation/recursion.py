@@ -30,24 +30,9 @@ def scan(
 ) -> tuple[FloatArray, ...]:
     """Apply a step to all samples of a record; return its outputs, stacked.
 
-    Parameters
-    ----------
-    step : callable
-        Takes the number of the sample and the state before it; returns the state after it and a
-        tuple of outputs.
-    state
-        State before the first step.
-    times : range
-        Numbers of the samples, also backward.
-    axis : int
-        Axis of time in the outputs.
-    first : tuple, optional
-        Outputs that stand before those of the first step.
-
-    Returns
-    -------
-    tuple of ndarray
-        Outputs in the order of the steps, stacked.
+    A step takes the number of the sample and the state before it, and returns the state after it
+    and a tuple of outputs. `times` may run backward; `axis` is that of time in the outputs; `first`
+    are outputs that stand before those of the first step.
     """
     outputs = [] if first is None else [first]
     for k in times:
@@ -65,27 +50,14 @@ def cycle(
 ) -> tuple[tuple[FloatArray, FloatArray], tuple[Any, ...]]:
     """One cycle of a filter: predict, gate, update.
 
-    Parameters
-    ----------
-    k : int
-        Number of the sample.
-    state : tuple
-        Estimates x (..., n) and their covariances P (..., n, n) at the sample before.
-    predict : callable
-        Takes k, x and P; returns x and P at the sample k.
-    correct : callable
-        Takes k and the predicted x and P; returns the innovation (..., m), NaN where a measurement
-        is missing, and what `gaussian.gain` returns.
-    bounds : tuple of ndarray, shape (m + 1,), optional
-        Gate on NIS for 0, 1, ... components that are measured, see `gate_bounds`.
+    The state is (x, P) at the sample before k. `predict` takes k, x and P and returns x and P at
+    the sample k. `correct` takes k and the predicted x and P, and returns the innovation (..., m),
+    NaN where a measurement is missing, and what `gaussian.gain` returns. `bounds` is a gate on NIS
+    for 0, 1, ... components that are measured, see `gate_bounds`.
 
-    Returns
-    -------
-    state : tuple
-        Estimates and covariances after the update.
-    outputs : tuple
-        x, P, innovation, S, NIS and whether the state was updated; without a gate the latter two
-        are left to `filter_records`, which computes them for the whole record at once.
+    Returned are the state after the update, and x, P, innovation, S, NIS and whether the state was
+    updated; without a gate the latter two are left to `filter_records`, which computes them for the
+    whole record at once.
     """
     x, P = predict(k, *state)
     innovation, K, P_after, S = correct(k, x, P)
@@ -110,20 +82,8 @@ def filter_records(
 ) -> Track:
     """Apply `cycle` to whole records, many runs at once.
 
-    Parameters
-    ----------
-    x : ndarray, shape (..., n)
-        Estimates one step before the first sample.
-    P : ndarray, shape (..., n, n)
-        Their covariances; leading axes of length one if the runs share them.
-    predict, correct, bounds
-        See `cycle`.
-    times, axis
-        See `scan`.
-
-    Returns
-    -------
-    Track
+    Estimates x (..., n) and covariances P (..., n, n) one step before the first sample; P has
+    leading axes of length one if the runs share it. For `times` and `axis` see `scan`.
     """
     x, P, innovation, S, *gated = scan(
         lambda k, state: cycle(k, state, predict, correct, bounds), (x, P), times, axis

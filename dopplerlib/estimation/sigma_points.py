@@ -54,23 +54,10 @@ def regression(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the linear regression of a function of Gaussians: mean, slope, residual.
 
-    Parameters
-    ----------
-    function : callable
-        Takes states (..., 2 n + 1, n), returns (..., 2 n + 1, m).
-    x, L : ndarray, shape (..., n) and (..., n, n)
-        Means and square roots of the covariances.
-    scale : tuple of float
-        See `scaling`.
-    wrap : iterable of int
-        Components of the function that are angles.
-
-    Returns
-    -------
-    mean : ndarray, shape (..., m)
-    HL : ndarray, shape (..., m, n)
-    root : ndarray, shape (..., m, n)
-        Its square is the covariance of what the regression line misses.
+    The function takes states (..., 2 n + 1, n) and returns values (..., 2 n + 1, m), of which the
+    components `wrap` are angles. Gaussians have means x (..., n) and covariances L L'; `scale` is
+    from `scaling`. Mean (..., m), slope H as H L (..., m, n), and a root (..., m, n) of the
+    covariance of what the regression line misses.
     """
     s, t = scale
     steps = s * np.concatenate([np.zeros_like(L.mT[..., :1, :]), L.mT, -L.mT], axis=-2)

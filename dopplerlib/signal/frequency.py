@@ -68,25 +68,11 @@ def peaks(
     fs: float,
     band: Sequence[float] | None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return frequency and power of the highest peak in each of many windows; unchecked.
+    """Return frequency (W,) and power (W,) of the highest peak in each of many windows; unchecked.
 
-    Parameters
-    ----------
-    x : ndarray of complex, shape (R, samples)
-        Records.
-    rows, firsts : ndarray of int, shape (W,)
-        In which record each window lies, and at which sample it begins.
-    n : int
-        Samples of a window.
-    fs, band
-        See `ml_frequency`.
-
-    Returns
-    -------
-    f : ndarray, shape (W,)
-        Frequencies in Hz; NaN for a window that never moves.
-    power : ndarray, shape (W,)
-        Square of the absolute value of the Fourier sum there; 0 where `f` is NaN.
+    Windows of n samples lie in `rows` (W,) of records x (R, samples), and begin at the samples
+    `firsts` (W,). The frequency is in Hz, NaN for a window that never moves; the power is the
+    square of the absolute value of the Fourier sum there, 0 where the frequency is NaN.
     """
     from ._ml_kernel import compiled  # here: numba takes half a second to load
 
