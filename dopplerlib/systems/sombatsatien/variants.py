@@ -21,7 +21,7 @@ from .published import reported
 from .student_filter import Jacobian, student_ekf
 
 Plane = Literal["z", "x"]
-LONG = 100  # samples of the "long" start: a tenth of the record
+LONG = 100  # a tenth of the record
 
 
 @checked
@@ -101,6 +101,7 @@ def post_mortem(
     start: Literal["as reported", "global", "long", "truth"] | States = "as reported",
     P0: Covariance | None = None,
     z: Measurements | None = None,
+    long: Runs = LONG,
 ) -> PostMortem:
     """Run the report's system, or a repaired one.
 
@@ -110,11 +111,12 @@ def post_mortem(
     plane: Plane of the ring, see `ring_scenario`.
     start (6,) or (runs, 6): "as reported": one descent, see `local_start`. "global":
         `ml_initialize` in the same box, on the same ten samples, for a target that moves. "long":
-        the same on a hundred samples, and `P0` is its covariance. "truth": the true state. Or
+        the same on `long` samples, and `P0` is its covariance. "truth": the true state. Or
         states of one's own.
     P0 (6, 6): Covariance of the start; that of the report, 0.1 I, if None and the start brings
         none.
     z (runs, 1000, 6): Measurements in Hz, for what would be simulated.
+    long: Samples of the "long" start, fewer than the record has.
     Raises ValueError if an argument is not one of those above, or is refused by `simulate` or the
         filter.
 
@@ -135,7 +137,9 @@ def post_mortem(
     elif z.shape != (runs, s.samples, len(s.array)):
         wanted = runs, s.samples, len(s.array)
         raise ValueError(f"z must have shape {wanted}, got {z.shape}")
-    used = LONG if isinstance(start, str) and start == "long" else settings.samples
+    if long >= s.samples:
+        raise ValueError(f"long must be less than the {s.samples} samples, got {long}")
+    used = long if isinstance(start, str) and start == "long" else settings.samples
     first, rest = np.split(z, [used], axis=1)
     true_start, truth = s.truth[used - 1], s.truth[used:]
     own = s.P0
