@@ -1,4 +1,7 @@
-"""Evidence on what the report concludes: on starts, on other filters, on Doppler-only tracking."""
+"""Evidence on the conclusions of the report: starts, other filters, Doppler-only tracking.
+
+Arguments are not checked.
+"""
 
 from functools import cache
 

@@ -1,4 +1,7 @@
-"""Evidence on the report's run: what its system gives in many runs, and in that run again."""
+"""Evidence on the report's run: its system in many runs, and that run again.
+
+Arguments are not checked.
+"""
 
 import numpy as np
 
@@ -72,7 +75,7 @@ def outcomes_evidence(
 
 
 def of_one_run(result: PostMortem) -> dict[str, object]:
-    """Return what the report prints of its run, in many, and how many end behind the ring."""
+    """Return the quantities that the report prints of its run, in many, and the share behind."""
     final = result.track.x[:, -1]
     return {
         **{f"start-{c}": Draws(result.start[:, i]) for i, c in enumerate(_COMPONENTS)},
@@ -170,7 +173,7 @@ def _consistent(result, consistent, confidence, windows, run):
 
 
 def likeness(result: PostMortem, shape: str) -> np.ndarray:
-    """Return how well the estimated path of each run follows the true one; 1 is perfect."""
+    """Return the likeness of the estimated path of each run to the true one; 1 is the most."""
     path, truth = result.track.x[..., :3], result.truth[:, :3]
     if shape == "direction from beginning to end":
         way, true_way = path[:, -1] - path[:, 0], truth[-1] - truth[0]

@@ -1,4 +1,7 @@
-"""Evidence on what the report sets up: formulas, ring, noise, path, and what they determine."""
+"""Evidence on formulas, ring, noise and path of the report, and on the state they determine.
+
+Arguments are not checked.
+"""
 
 import numpy as np
 
@@ -67,7 +70,7 @@ def along_a_cone(x: FloatArray, array: RadarArray) -> FloatArray:
 
 
 def _mismatch(setup, array, other):
-    """Return by how much, in m, two rings differ in shape or in place."""
+    """Return the largest difference of two rings, in shape or in place, in m."""
     ours, theirs = array.positions, other.positions
     if setup == "its shape":
         between = [np.linalg.norm(p[:, None] - p, axis=-1).ravel() for p in (ours, theirs)]
@@ -86,7 +89,7 @@ def _count(samples):
 
 
 def determined(samples: str) -> int:
-    """Return how many of the six unknowns one sensor determines by so many samples."""
+    """Return the number of unknowns, of six, that one sensor determines by so many samples."""
     s, n = reported().scenario, _count(samples)
     H = doppler_jacobian(s.truth[:n], s.array)[:, 0]
     H[:, 3:] += s.time[:n, None] * H[:, :3]  # by the state at the first sample
