@@ -100,6 +100,13 @@ def check_shape(name, array, shape):
         raise ValueError(f"{name} must have shape (..., {wanted}), got {array.shape}")
 
 
+def exact_shape(name, array, shape):
+    """Return `array`, or raise unless it has this shape."""
+    if array.shape != shape:
+        raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
+    return array
+
+
 def matrix(name, value, shape):
     """Return `value` as a float array, or raise unless it is one finite matrix of `shape`."""
     return one_matrix(name, finite(name, value, shape))

@@ -19,15 +19,15 @@ def record(cls: type[_T]) -> type[_T]:
 
     Fields are held so that the record cannot change them: an array as a read-only view, a list as
     a tuple, a dict as one that refuses to be written to; so they are in a copy, and after a pickle.
+    What a ``__post_init__`` returns, a dict, takes the place of the fields of these names.
     A view costs no copy and leaves the array of the caller writable: who goes on writing into that
     array changes the record. A class that wants to be safe from this copies in ``__post_init__``.
     """
     check = cls.__dict__.get("__post_init__")
 
     def __post_init__(self):
-        if check is not None:
-            check(self)
-        _freeze(self, self.__dict__)
+        found = check(self) if check is not None else None
+        _freeze(self, self.__dict__ | (found or {}))
 
     def __setstate__(self, state):
         _freeze(self, state)

@@ -217,3 +217,18 @@ def test_a_track_is_made_in_microseconds():
     fields = [np.array(getattr(track, field.name)) for field in dataclasses.fields(Track)]
     # 3 us here; the bound is for a machine that is busy with something else.
     assert min(timeit.repeat(lambda: Track(*fields), number=1000, repeat=5)) < 0.05
+
+
+def test_what_a_check_returns_takes_the_place_of_fields():
+    @record
+    class Rounded:
+        """A number and a list."""
+
+        number: float
+        others: list
+
+        def __post_init__(self):
+            return {"number": round(self.number)}
+
+    rounded = Rounded(1.2, [1])
+    assert (rounded.number, rounded.others) == (1, (1,))

@@ -98,18 +98,16 @@ class IqTrack:
             "x": (*each, 6), "P": (*each, 6, 6), "nis": (*each[:-1], K - used),
             "lag1_autocorrelation": leading, "score": each, "degrees": leading,
         }  # fmt: skip
+        fields = {"used": used}
         for name, shape in shapes.items():
-            values = _checks.real(name, getattr(self, name))
-            if values.shape != shape:
-                raise ValueError(f"{name} must have shape {shape}, got {values.shape}")
+            values = _checks.exact_shape(name, _checks.real(name, getattr(self, name)), shape)
             if name in ("time", "available_at", "degrees"):
                 _checks.moderate(name, values)
             elif name not in ("shift_std", "score"):
                 _checks.measured(name, values, ())
-            object.__setattr__(self, name, values)
+            fields[name] = values
         walk = _checks.moderate_number("velocity_random_walk", self.velocity_random_walk)
-        object.__setattr__(self, "used", used)
-        object.__setattr__(self, "velocity_random_walk", walk)
+        return {**fields, "velocity_random_walk": walk}
 
     @property
     @_checks.quiet

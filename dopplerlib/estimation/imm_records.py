@@ -89,8 +89,7 @@ class ImmModel:
         for name, other in (("to_common", "from_common"), ("from_common", "to_common")):
             if getattr(self, other) is not None:
                 _checks.function(name, getattr(self, name))
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        return checked
 
     @property
     def n(self) -> int:

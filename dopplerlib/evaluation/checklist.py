@@ -229,9 +229,8 @@ def _checked(tracker):
         track = _checks.instance("tracker(...)", tracker(z, array, x0, *settings), Track)
         for name, own in {"x": (6,), "P": (6, 6), "innovation": z.shape[2:], "S": z.shape[2:] * 2,
                           "nis": ()}.items():  # fmt: skip
-            got, wanted = np.shape(getattr(track, name)), (*z.shape[:2], *own)
-            if got != wanted:
-                raise ValueError(f"{name} of tracker(...) must have shape {wanted}, got {got}")
+            value = np.asarray(getattr(track, name))
+            _checks.exact_shape(f"{name} of tracker(...)", value, (*z.shape[:2], *own))
         return track
 
     return checked

@@ -58,8 +58,7 @@ class Table:
         rows = _rows(self.rows, len(columns))
         digits = _digits(self.digits, list(rows), len(columns))
         _checks.instance("corner", self.corner, str)
-        for name, value in (("rows", rows), ("columns", columns), ("digits", digits)):
-            object.__setattr__(self, name, value)
+        return {"rows": rows, "columns": columns, "digits": digits}
 
     @property
     def cells(self) -> list[list[str]]:

@@ -53,10 +53,8 @@ class RadarArray:
             raise ValueError(f"positions must have shape (N, 3) with N >= 1, got {positions.shape}")
         if len(np.unique(positions, axis=0)) < len(positions):
             raise ValueError(f"positions must differ from one another, got {positions.tolist()}")
-        object.__setattr__(self, "positions", positions)
-        object.__setattr__(
-            self, "wavelength", _checks.moderate_number("wavelength", self.wavelength)
-        )
+        wavelength = _checks.moderate_number("wavelength", self.wavelength)
+        return {"positions": positions, "wavelength": wavelength}
 
     def __len__(self):
         """Return the number of sensors N."""

@@ -84,15 +84,13 @@ class Scenario:
         x0 = _checks.moderate("x0", self.x0, (6,)).copy()
         P0 = _checks.covariance("P0", self.P0, 6).copy()
         _checks.instance("array", self.array, RadarArray)
-        for name, array, shape in [("x0", x0, (6,)), ("P0", P0, (6, 6))]:
-            if array.shape != shape:
-                raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
+        _checks.exact_shape("x0", x0, (6,))
+        _checks.exact_shape("P0", P0, (6, 6))
         check_clear_of_sensors("x0", x0, self.array)
-        object.__setattr__(self, "x0", x0)
-        object.__setattr__(self, "P0", P0)
-        object.__setattr__(self, "samples", _checks.whole_number("samples", self.samples))
-        for name in ("T", "sigma_f", "sigma_a"):
-            object.__setattr__(self, name, _checks.moderate_number(name, getattr(self, name)))
+        samples = _checks.whole_number("samples", self.samples)
+        numbers = ("T", "sigma_f", "sigma_a")
+        numbers = {name: _checks.moderate_number(name, getattr(self, name)) for name in numbers}
+        return {"x0": x0, "P0": P0, "samples": samples, **numbers}
 
     @property
     def time(self) -> FloatArray:

@@ -79,13 +79,10 @@ class Recording:
         if not finite.all():
             x = np.where(finite, x, 0)
         utc("start", self.start)
-        for name, value in (
-            ("x", x.astype(complex, copy=False)),
-            ("fs", _checks.one_number("fs", self.fs, _checks.deviation)),
-            ("carrier", _checks.one_number("carrier", self.carrier, _checks.deviation)),
-            ("valid", valid),
-        ):
-            object.__setattr__(self, name, value)
+        fs = _checks.one_number("fs", self.fs, _checks.deviation)
+        carrier = _checks.one_number("carrier", self.carrier, _checks.deviation)
+        x = x.astype(complex, copy=False)
+        return {"x": x, "fs": fs, "carrier": carrier, "valid": valid}
 
     @property
     def time(self) -> FloatArray:

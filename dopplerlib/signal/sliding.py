@@ -72,13 +72,10 @@ class DopplerRecord:
                 )
             if name != "frequency" and (value < 0).any():
                 raise ValueError(f"{name} must not be negative, got {np.nanmin(value):g}")
-        for name, value in (
-            *arrays.items(),
-            ("time", _checks.finite("time", self.time, frequency.shape[-2:-1])),
-        ):
-            object.__setattr__(self, name, value)
-        if self.time.ndim != 1:
-            raise ValueError(f"time must have shape (K,), got {self.time.shape}")
+        time = _checks.finite("time", self.time, frequency.shape[-2:-1])
+        if time.ndim != 1:
+            raise ValueError(f"time must have shape (K,), got {time.shape}")
+        return {"time": time, **arrays}
 
     @property
     def snr(self) -> FloatArray:
@@ -263,10 +260,7 @@ def _by_call(records, fs, n, firsts, estimator, band):
         with np.errstate(divide="ignore", invalid="ignore"):  # windows of zeros
             found = _checks.called("estimator", estimator, x, fs, band)
         found = _checks.real("estimator(x, fs, band)", found)
-        if found.shape != x.shape[:-1]:
-            raise ValueError(
-                f"estimator(x, fs, band) must have shape {x.shape[:-1]}, got {found.shape}"
-            )
+        _checks.exact_shape("estimator(x, fs, band)", found, x.shape[:-1])
         found = np.where(np.isfinite(found) & ~still[part], found, np.nan)
         if constant:
             x = about_mean(x)

@@ -463,8 +463,7 @@ def strongest_cell(r: ArrayLike, v: ArrayLike, power: ArrayLike) -> tuple[float,
     """
     power = _cells(power)
     r, v = _checks.one_row("r", r), _checks.one_row("v", v)
-    if power.shape != (len(v), len(r)):
-        raise ValueError(f"power must have shape {(len(v), len(r))}, got {power.shape}")
+    _checks.exact_shape("power", power, (len(v), len(r)))
     i, j = np.unravel_index(power.argmax(), power.shape)
     return float(r[j]), float(v[i])
 

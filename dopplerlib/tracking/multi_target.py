@@ -56,11 +56,7 @@ class ManagedTrack:
         """Check that the fields have one number of scans."""
         n = self.x.shape[-1]
         for name, shape in (("x", (n,)), ("P", (n, n)), ("detection", ()), ("confirmed", ())):
-            wanted = (len(self.scan), *shape)
-            if getattr(self, name).shape != wanted:
-                raise ValueError(
-                    f"{name} must have shape {wanted}, got {getattr(self, name).shape}"
-                )
+            _checks.exact_shape(name, getattr(self, name), (len(self.scan), *shape))
 
 
 @_checks.quiet

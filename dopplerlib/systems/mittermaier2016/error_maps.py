@@ -35,10 +35,7 @@ class ErrorMap:
 
     def __post_init__(self):
         """Check that both maps are of the same places and draws."""
-        if self.position.shape != self.velocity.shape:
-            raise ValueError(
-                f"velocity must have shape {self.position.shape}, got {self.velocity.shape}"
-            )
+        _checks.exact_shape("velocity", self.velocity, self.position.shape)
 
     @property
     def state(self) -> FloatArray:

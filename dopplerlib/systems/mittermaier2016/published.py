@@ -51,8 +51,7 @@ class PublishedFigure3:
         """Check that there is a map for each number of samples."""
         shape = len(self.samples), len(self.x), len(self.y)
         for name in ("error", "below"):
-            if getattr(self, name).shape != shape:
-                raise ValueError(f"{name} must have shape {shape}, got {getattr(self, name).shape}")
+            _checks.exact_shape(name, getattr(self, name), shape)
 
     @property
     def shown(self) -> FloatArray:

@@ -134,9 +134,8 @@ def post_mortem(
     s, settings = ring_scenario(plane), reported().start
     if z is None:
         _, z = simulate(s, runs, rng=rng)
-    elif z.shape != (runs, s.samples, len(s.array)):
-        wanted = runs, s.samples, len(s.array)
-        raise ValueError(f"z must have shape {wanted}, got {z.shape}")
+    else:
+        _checks.exact_shape("z", z, (runs, s.samples, len(s.array)))
     if long >= s.samples:
         raise ValueError(f"long must be less than the {s.samples} samples, got {long}")
     used = long if isinstance(start, str) and start == "long" else settings.samples

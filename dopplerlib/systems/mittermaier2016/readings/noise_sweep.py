@@ -173,8 +173,7 @@ def dots_log_likelihood(model: DotsStructure, position: Dots, velocity: Dots) ->
 
 def _dots(position, velocity):
     """Return the logarithms of the dots, position and velocity on the last axis."""
-    if position.shape != velocity.shape:
-        raise ValueError(f"velocity must have shape {position.shape}, got {velocity.shape}")
+    _checks.exact_shape("velocity", velocity, position.shape)
     return np.log(np.stack([position, velocity], axis=-1))
 
 
