@@ -141,15 +141,7 @@ def parabolic_three_highest(
 def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the frequency by Jacobsen and Kootsookos, from three complex bins.
 
-    Parameters
-    ----------
-    x, fs, band
-        See `peak_bin`.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Frequencies in Hz; NaN for a window that tells none.
+    Arguments and result are those of `peak_bin`.
 
     Notes
     -----
@@ -171,15 +163,7 @@ def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Fl
 def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the frequency by Candan: `jacobsen` with a correction of its bias.
 
-    Parameters
-    ----------
-    x, fs, band
-        See `peak_bin`.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Frequencies in Hz; NaN for a window that tells none.
+    Arguments and result are those of `peak_bin`.
 
     Notes
     -----
@@ -201,15 +185,7 @@ def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
 def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Quinn's first estimate, from the highest bin and the neighbor on the tone's side.
 
-    Parameters
-    ----------
-    x, fs, band
-        See `peak_bin`.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Frequencies in Hz; NaN for a window that tells none.
+    Arguments and result are those of `peak_bin`.
 
     Notes
     -----
@@ -232,15 +208,7 @@ def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
 def quinn2(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Quinn's second estimate, which weights both neighbors.
 
-    Parameters
-    ----------
-    x, fs, band
-        See `peak_bin`.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Frequencies in Hz; NaN for a window that tells none.
+    Arguments and result are those of `peak_bin`.
 
     Notes
     -----
