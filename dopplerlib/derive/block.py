@@ -47,8 +47,6 @@ class Block:
 
     Examples
     --------
-    >>> from dopplerlib.derive.block import Block, Stage
-    >>> import sympy as sp
     >>> x, y, product = sp.symbols("x y product")
     >>> stage = Stage("both at once", [(product, (x + y) * (x - y))])
     >>> block = Block("times", "Sum times difference.", (x, y), (stage,), (product,))

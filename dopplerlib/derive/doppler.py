@@ -56,7 +56,6 @@ def in_line_of_sight(expression: Expression) -> sp.Expr:
 
     Examples
     --------
-    >>> from dopplerlib.derive.doppler import SENSOR, STATE, in_line_of_sight
     >>> in_line_of_sight((SENSOR[0] - STATE[0]) * STATE[3])
     d_x*v_x
     """
@@ -110,7 +109,6 @@ def as_written(expression: Expression) -> sp.Expr:
 
     Examples
     --------
-    >>> from dopplerlib.derive.doppler import as_written, doppler_shift
     >>> as_written(doppler_shift())
     2*(d_x*v_x + d_y*v_y + d_z*v_z)/(lambda*rho)
     """
@@ -134,7 +132,6 @@ def equations(gradient: bool = True) -> tuple:
 
     Examples
     --------
-    >>> from dopplerlib.derive.doppler import equations
     >>> equations(gradient=False)[0]
     (d_x, s_x - x)
     """

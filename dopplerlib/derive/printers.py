@@ -32,9 +32,7 @@ def python_function(block: Block) -> str:
 
     Examples
     --------
-    >>> import sympy as sp
-    >>> from dopplerlib.derive.block import Block, Stage
-    >>> from dopplerlib.derive.printers import python_function
+    >>> from dopplerlib.derive.block import Stage
     >>> x, cube = sp.symbols("x cube")
     >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
     >>> program = {}
@@ -72,9 +70,7 @@ def python_lanes(block: Block, places: dict[Name, tuple[str, Index]]) -> str:
 
     Examples
     --------
-    >>> import sympy as sp
-    >>> from dopplerlib.derive.block import Block, Stage
-    >>> from dopplerlib.derive.printers import python_lanes
+    >>> from dopplerlib.derive.block import Stage
     >>> x, cube = sp.symbols("x cube")
     >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
     >>> program, work = {}, [2, None]
@@ -110,21 +106,11 @@ def python_lanes(block: Block, places: dict[Name, tuple[str, Index]]) -> str:
 def c99_function(block: Block) -> str:
     """Return `block` as a C99 function that writes its outputs to an array.
 
-    Parameters
-    ----------
-    block : Block
-        As for `python_function`.
-
-    Raises
-    ------
-    ValueError
-        As by `python_function`.
+    It takes and refuses the same blocks as `python_function`.
 
     Examples
     --------
-    >>> import sympy as sp
-    >>> from dopplerlib.derive.block import Block, Stage
-    >>> from dopplerlib.derive.printers import c99_function
+    >>> from dopplerlib.derive.block import Stage
     >>> x, cube = sp.symbols("x cube")
     >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
     >>> print(c99_function(block).partition("void ")[2])
@@ -151,21 +137,11 @@ def c99_function(block: Block) -> str:
 def javascript_function(block: Block) -> str:
     """Return `block` as a JavaScript function that returns an array of its outputs.
 
-    Parameters
-    ----------
-    block : Block
-        As for `python_function`.
-
-    Raises
-    ------
-    ValueError
-        As by `python_function`.
+    It takes and refuses the same blocks as `python_function`.
 
     Examples
     --------
-    >>> import sympy as sp
-    >>> from dopplerlib.derive.block import Block, Stage
-    >>> from dopplerlib.derive.printers import javascript_function
+    >>> from dopplerlib.derive.block import Stage
     >>> x, cube = sp.symbols("x cube")
     >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
     >>> print(javascript_function(block))

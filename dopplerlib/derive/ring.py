@@ -48,7 +48,6 @@ def invariants(state: _State = STATE) -> sp.Matrix:
     Examples
     --------
     >>> from dopplerlib.derive.doppler import STATE
-    >>> from dopplerlib.derive.ring import invariants
     >>> invariants(STATE).T
     Matrix([[r**2 + x**2 + y**2 + z**2, y, z, v_x*x + v_y*y + v_z*z, v_y, v_z]])
     """

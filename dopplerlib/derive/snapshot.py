@@ -65,8 +65,6 @@ def rank(matrix: RationalMatrix) -> int:
 
     Examples
     --------
-    >>> import sympy as sp
-    >>> from dopplerlib.derive.snapshot import rank
     >>> x = sp.Symbol("x")
     >>> rank(sp.Matrix([[1, x], [1 / x, 1]]))
     1
@@ -104,7 +102,6 @@ def prove_twin_agrees(order: Annotated[int, up_to(3, least=0)]) -> sp.Expr:
 
     Examples
     --------
-    >>> from dopplerlib.derive.snapshot import prove_twin_agrees
     >>> prove_twin_agrees(0)
     0
     """
