@@ -1,5 +1,6 @@
 """Steady-state lag and noise of the filter, and the w that minimizes its error."""
 
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -187,6 +188,7 @@ def velocity_response(rate: Positive, s: AutomotiveSettings | None = None) -> co
     return complex(estimate[1])
 
 
+@cache
 def _settled(s):
     F = ncv_transition(s.T, dim=1)
     K, _ = steady_state_gain(F, s.E_x[:2, :2], np.eye(2), s.E_z[:2, :2])

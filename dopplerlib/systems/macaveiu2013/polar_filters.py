@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 
 from ... import _checks
-from ..._hints import Runs, checked, exactly, shaped
+from ..._hints import Positive, Runs, checked, exactly, shaped
 from ..._typing import FloatArray
 from ...estimation import densities, gaussian, recursion
 from ...estimation.extended_update import linearized
@@ -20,8 +20,14 @@ SIDEWAYS = 3.0  # m/s: deviation of the velocity across the line of sight before
 Record = Annotated[FloatArray, exactly(None, None, 3, check=_checks.bounded)]
 
 
-def polar_noise() -> FloatArray:
+@checked
+def polar_noise(sigma_phi: Positive | None = None) -> FloatArray:
     """Return the covariance of range, azimuth and range rate.
+
+    Parameters
+    ----------
+    sigma_phi : float, optional
+        Standard deviation of the azimuth in rad; that of the data file if None.
 
     Returns
     -------
@@ -33,7 +39,8 @@ def polar_noise() -> FloatArray:
     [0.25, 0.0175, 0.1]
     """
     radar = reported().scenario.polar
-    return np.diag([radar.sigma_r, radar.sigma_phi, radar.sigma_rate]) ** 2
+    sigma_phi = radar.sigma_phi if sigma_phi is None else sigma_phi
+    return np.diag([radar.sigma_r, sigma_phi, radar.sigma_rate]) ** 2
 
 
 @checked
@@ -74,6 +81,7 @@ def measure_polar(truth: Truth, runs: Runs, *, rng: np.random.Generator) -> Floa
 @checked
 def start_polar(
     z: Annotated[FloatArray, shaped(3)],
+    R: Annotated[FloatArray, exactly(3, 3)] | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return state and covariance from one polar measurement.
 
@@ -81,6 +89,8 @@ def start_polar(
     ----------
     z : array_like, shape (..., 3)
         Range, azimuth and range rate.
+    R : array_like, shape (3, 3), optional
+        Covariance of the measurement; `polar_noise` if None.
 
     Returns
     -------
@@ -94,7 +104,7 @@ def start_polar(
     >>> x.tolist()
     [0.0, 0.0, 5.0, 1.0]
     """
-    R = polar_noise()
+    R = polar_noise() if R is None else R
     r, azimuth, rate = np.moveaxis(z, -1, 0)
     along = np.stack([np.sin(azimuth), np.cos(azimuth)], axis=-1)
     across = np.stack([np.cos(azimuth), -np.sin(azimuth)], axis=-1)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from ... import _checks
-from ..._hints import Count, checked, exactly, shaped
+from ..._hints import Count, Positive, checked, exactly, shaped
 from ..._records import record
 from ..._typing import BoolArray, FloatArray, IntArray
 from ...model.motion import ncv_transition
@@ -161,25 +161,29 @@ def _heading(v):
 
 
 @checked
-def is_moving(z: Annotated[FloatArray, shaped(3, check=_checks.measured)]) -> BoolArray:
+def is_moving(
+    z: Annotated[FloatArray, shaped(3, check=_checks.measured)], limit: Positive | None = None
+) -> BoolArray:
     """Return which detections move: the clutter rule.
 
     Parameters
     ----------
     z : array_like, shape (..., 3)
         Range in m, azimuth in rad, range rate in m/s.
+    limit : float, optional
+        Range rate in m/s below which a detection is clutter; one resolution cell if None.
 
     Returns
     -------
     ndarray of bool, shape (...)
-        False for clutter: whatever has a range rate below that of one resolution cell.
+        False for clutter.
 
     Examples
     --------
     >>> is_moving([[5.0, 0.0, 1.0], [5.0, 0.0, 0.1]]).tolist()
     [True, False]
     """
-    return np.abs(z[..., 2]) >= reported().scenario.polar.v_min
+    return np.abs(z[..., 2]) >= (reported().scenario.polar.v_min if limit is None else limit)
 
 
 @checked
@@ -213,6 +217,7 @@ def after_clutter_rule(scans: Iterable[VehicleScan], rule: Rule = "always") -> l
 @checked
 def group_detections(
     z: Annotated[FloatArray, shaped(None, 3)],
+    box: tuple[Positive, Positive, Positive] = BOX,
 ) -> tuple[FloatArray, IntArray]:
     """Return the objects that detections make up: the detection-to-object association.
 
@@ -220,6 +225,8 @@ def group_detections(
     ----------
     z : array_like, shape (detections, 3)
         Detections.
+    box : tuple of float
+        Half-widths of the gate around an object in m, rad and m/s.
 
     Returns
     -------
@@ -241,7 +248,7 @@ def group_detections(
     """
     z = _checks.one_matrix("z", z)
     member = np.full(len(z), -1)
-    near = fixed_box_gate(z[:, None] - z, BOX)
+    near = fixed_box_gate(z[:, None] - z, box)
     means = []
     for i in np.argsort(z[:, 0]):
         if member[i] < 0:
@@ -306,13 +313,15 @@ def track_objects(
 
 
 @checked
-def hidden_scans(truth: Truth) -> BoolArray:
+def hidden_scans(truth: Truth, limit: Positive | None = None) -> BoolArray:
     """Return whether the clutter rule deletes the target itself at each scan, without noise.
 
     Parameters
     ----------
     truth : array_like, shape (K, 4)
         True states.
+    limit : float, optional
+        See `is_moving`.
 
     Returns
     -------
@@ -328,7 +337,7 @@ def hidden_scans(truth: Truth) -> BoolArray:
     >>> hidden_scans([[0.0, 1.0, 5.0, 0.0], [0.0, 0.0, 5.0, 1.0]]).tolist()
     [True, False]
     """
-    return ~is_moving(polar_radar_h(truth))
+    return ~is_moving(polar_radar_h(truth), limit)
 
 
 @checked

@@ -270,7 +270,9 @@ def count_detections(scans: Iterable[VehicleScan]) -> DetectionCounts:
 
 
 @checked
-def deleted_fraction(truth: Truth | None = None, limit: Positive | None = None) -> float:
+def deleted_fraction(
+    truth: Truth | None = None, limit: Positive | None = None, sigma_rate: Positive | None = None
+) -> float:
     """Predict the fraction of the detections that the clutter rule deletes.
 
     Parameters
@@ -279,6 +281,8 @@ def deleted_fraction(truth: Truth | None = None, limit: Positive | None = None) 
         True states of the middle of the target; if None, that of what stands still.
     limit : float, optional
         Range rate in m/s below which a detection is deleted; that of the data file if None.
+    sigma_rate : float, optional
+        Standard deviation of a measured range rate in m/s; that of the data file if None.
 
     Returns
     -------
@@ -298,10 +302,11 @@ def deleted_fraction(truth: Truth | None = None, limit: Positive | None = None) 
     """
     radar = reported().scenario.polar
     limit = radar.v_min if limit is None else limit
+    sigma_rate = radar.sigma_rate if sigma_rate is None else sigma_rate
     rate = (
         np.zeros(1) if truth is None else polar_radar_h(processing.reflection_points(truth))[..., 2]
     )
-    ends = [(sign * limit - rate) / radar.sigma_rate for sign in (1, -1)]
+    ends = [(sign * limit - rate) / sigma_rate for sign in (1, -1)]
     return float(np.mean(ndtr(ends[0]) - ndtr(ends[1])))
 
 

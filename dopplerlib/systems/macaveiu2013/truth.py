@@ -4,7 +4,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ..._hints import Index, checked, exactly
+from ..._hints import Index, Positive, checked, exactly
 from ..._records import record
 from ..._typing import BoolArray, FloatArray
 from .published import KMH, reported
@@ -73,8 +73,14 @@ def _axis(law):
     return amplitude * (1 - np.cos(rate * t)) / rate, amplitude * np.sin(rate * t)
 
 
-def hard_turn() -> tuple[VehiclePath, BoolArray]:
+@checked
+def hard_turn(duration: Positive | None = None) -> tuple[VehiclePath, BoolArray]:
     """Return a path that is not in the document: straight, a quarter of a circle, straight.
+
+    Parameters
+    ----------
+    duration : float, optional
+        Of the turn in s, up to the end of the record; that of the data file if None.
 
     Returns
     -------
@@ -89,12 +95,13 @@ def hard_turn() -> tuple[VehiclePath, BoolArray]:
     79
     """
     turn, t = reported().scenario.hard_turn, automotive_settings().time
-    speed, rate = turn.speed * KMH, turn.angle / turn.duration
-    since = np.clip(t - turn.start, 0, turn.duration)
-    after = np.maximum(t - turn.start - turn.duration, 0)
+    duration = turn.duration if duration is None else duration
+    speed, rate = turn.speed * KMH, turn.angle / duration
+    since = np.clip(t - turn.start, 0, duration)
+    after = np.maximum(t - turn.start - duration, 0)
     heading = rate * since  # from +y towards +x
     v_x, v_y = speed * np.sin(heading), speed * np.cos(heading)
     x = speed * (1 - np.cos(heading)) / rate + v_x * after
     y = speed * (np.minimum(t, turn.start) + np.sin(heading) / rate) + v_y * after
-    turning = (t > turn.start) & (t < turn.start + turn.duration)
+    turning = (t > turn.start) & (t < turn.start + duration)
     return VehiclePath(0, "hard turn", np.stack([x, v_x, y + 5.0, v_y], axis=-1)), turning
