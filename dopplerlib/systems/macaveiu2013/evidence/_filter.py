@@ -23,9 +23,7 @@ def found(rng):
 
     @cache
     def scores(*noise):
-        return claim_regions.score_paths(
-            RUNS, rng=np.random.default_rng(seed), s=settings(*noise)
-        )
+        return claim_regions.score_paths(RUNS, rng=np.random.default_rng(seed), s=settings(*noise))
 
     def largest(noise, counted):
         one = scores(*noise)
@@ -66,7 +64,7 @@ def settings(sigma_x, ratio, w):
 
 
 def other_covariance(*place):
-    """Return noise and lag of the settled filter for a larger E_z, over those for that of the noise.
+    """Return noise and lag of the settled filter for a larger E_z, relative.
 
     The gain depends on the ratio of the covariances alone, so w is made smaller instead; of
     position and speed that one which does the claim less good.

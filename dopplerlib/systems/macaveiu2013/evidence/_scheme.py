@@ -1,6 +1,7 @@
 """Evidence on Section III: the sensor, and the scheme from detections to tracks."""
 
 from functools import cache
+from itertools import chain
 
 import numpy as np
 
@@ -79,7 +80,7 @@ def grouping(rng):
     def together(path, size):
         box = tuple(size * np.array(processing.BOX))
         one_object = []
-        for scan in sum(scans[path], []):
+        for scan in chain.from_iterable(scans[path]):
             own = processing.group_detections(scan.z, box)[1][scan.source == processing.TARGET]
             if len(own) > 1:
                 one_object.append(len(set(own)) == 1)
@@ -124,9 +125,7 @@ def comparison(rng):
     @cache
     def crossing(rule, angle, velocity):
         truth = crossing_paths(np.deg2rad(angle))
-        return track_crossing(
-            truth, rule, RUNS, rng=np.random.default_rng(seed), velocity=velocity
-        )
+        return track_crossing(truth, rule, RUNS, rng=np.random.default_rng(seed), velocity=velocity)
 
     def more(failure, rule, angle, compared):
         which = "lost" if failure == "both tracks on one target" else "swapped"
