@@ -172,11 +172,11 @@ def test_a_fast_car_is_folded_by_the_rate_of_the_chirps(chirps, speed):
     assert found.folds(chirps, speed) == turned
 
 
-@pytest.mark.parametrize(("body", "level"), [(1.0, 10), (1.25, 6), (0.8, 15)])
+@pytest.mark.parametrize(("body", "level"), [(1.25, 6), (0.8, 15)])
 def test_shapes_by_direct_sums(body, level):
     """Maps as sums over reflection points of range and Doppler responses of the window.
 
-    The coupling of range and speed in a chirp and the edge of a level move a count by one or two.
+    At these levels no cell is within a rounding of the edge, so that the counts are equal.
     """
     n, m = np.arange(256), np.arange(512)
     cars = [(20 + (r - 20) * body, 10 / 3.6) for r in np.linspace(18, 22, 5)]
@@ -195,8 +195,8 @@ def test_shapes_by_direct_sums(body, level):
         strong = np.abs(total) >= np.abs(total).max() * 10 ** (-level / 20)
         counts.append(strong.any(axis=0).sum() / strong.any(axis=1).sum())
     one = found.shapes(body, level)
-    assert one["profile-car"] == pytest.approx(counts[0], rel=0.45)
-    assert one["profile-pedestrian"] == pytest.approx(counts[1], rel=0.45)
+    assert one["profile-car"] == pytest.approx(counts[0])
+    assert one["profile-pedestrian"] == pytest.approx(counts[1])
 
 
 def test_resolutions_compared_by_hand():
