@@ -89,7 +89,7 @@ def harder(*place):
 
 
 def left_over(periods):
-    """Return how far from its lane the target of Fig 11 ends, in m."""
+    """Return the distance of the target of Fig 11 from its lane at the end, in m."""
     s = automotive_settings()
     rate = 2 * np.pi * periods / (s.samples * s.T)
     return float(1.5 * KMH * (1 - np.cos(2 * np.pi * periods)) / rate)
@@ -105,7 +105,7 @@ def accuracies(scale, how_far):
 
 
 def arithmetic():
-    """Return what follows from numbers of the document and cannot fail."""
+    """Return consequences of the document's numbers, which cannot fail."""
     s = automotive_settings()
     a = 10 * KMH / (s.samples * s.T)
     best = s.with_(w=lag_prediction.best_w(a))

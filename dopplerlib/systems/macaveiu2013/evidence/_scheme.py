@@ -48,7 +48,7 @@ def correlation(path, sigma_phi):
 
 
 def removed(limit, sigma_rate):
-    """Return the fraction of the reflections of what stands still that the rule deletes."""
+    """Return the fraction of stationary reflections that the rule deletes."""
     return processing_study.deleted_fraction(limit=limit, sigma_rate=sigma_rate)
 
 
@@ -58,7 +58,7 @@ def deleted_scans(limit):
 
 
 def uncompensated(speed, limit):
-    """Return the fraction of what stands still that the rule deletes from a moving car.
+    """Return the fraction of stationary reflections that the rule deletes from a moving car.
 
     Relative to that from a standing one.
     """
@@ -119,7 +119,7 @@ def least_tracked(target, rule_for):
 
 
 def comparison(rng):
-    """Return a function: how much more often the Hungarian algorithm fails, on the same noise."""
+    """Return a function for the excess of failures of the Hungarian algorithm, on the same noise."""
     seed = int(rng.integers(2**32))
 
     @cache

@@ -1,4 +1,4 @@
-"""Evidence on Section II: what each waveform measures, and what it confuses."""
+"""Evidence on Section II: measurements and ambiguities of each waveform."""
 
 from functools import cache
 
@@ -57,7 +57,7 @@ def intersections(targets, slopes):
 
 
 def explained(targets, slopes):
-    """Return how many intersections all slopes explain within half a frequency cell."""
+    """Return the number of intersections that all slopes explain within half a frequency cell."""
     return int(np.sum(intersections(targets, slopes)[1] < 0.5 / automotive_settings().T))
 
 
@@ -92,7 +92,7 @@ def fsk_errors(rng, snr, step):
 
 
 def fsk_confusion(apart, phase, step):
-    """Return how far the range found is from the nearer of two targets of one speed, in cells."""
+    """Return the distance of the range found from the nearer of two targets of one speed, in cells."""
     radar = automotive_settings().radar
     ranges = np.array([30.0, 30.0 + apart + phase * radar.wavelength / 2])
 
@@ -105,7 +105,7 @@ def fsk_confusion(apart, phase, step):
 
 
 def mfsk_error(beats, phase):
-    """Return how far the worst range found is from the nearest target, in cells; no noise."""
+    """Return the distance of the worst range found from the nearest target, in cells; no noise."""
     radar = automotive_settings().radar
     A, targets = fsk.mfsk_relations(radar), TARGETS.copy()
     if beats == "a shared beat":
@@ -132,7 +132,7 @@ def gate_error(apart, phase):
 
 
 def folds(chirps, speed):
-    """Return how many times the range rate of a car that comes nearer is folded."""
+    """Return the number of times that the range rate of a car that comes nearer is folded."""
     radar = automotive_settings().radar
     signal = waveforms.rapid_chirps(radar, [50.0, -speed], chirps=chirps, samples=128)
     _, v = waveforms.strongest_cell(*waveforms.range_doppler_map(radar, signal))
