@@ -119,7 +119,7 @@ def least_tracked(target, rule_for):
 
 
 def comparison(rng):
-    """Return a function for the excess of failures of the Hungarian algorithm, on the same noise."""
+    """Return a function for the excess of failures of the Hungarian algorithm, on one noise."""
     seed = int(rng.integers(2**32))
 
     @cache

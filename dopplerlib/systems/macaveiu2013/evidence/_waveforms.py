@@ -92,7 +92,7 @@ def fsk_errors(rng, snr, step):
 
 
 def fsk_confusion(apart, phase, step):
-    """Return the distance of the range found from the nearer of two targets of one speed, in cells."""
+    """Return the distance of the range found from the nearer of two targets, in cells."""
     radar = automotive_settings().radar
     ranges = np.array([30.0, 30.0 + apart + phase * radar.wavelength / 2])
 
