@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from ..._hints import Covariance, Runs, States, checked, exactly
+from ..._hints import Covariance, Reals, Runs, States, checked, exactly
 from ..._records import record
 from ..._typing import FloatArray
 from ...estimation.extended_kalman import ekf
@@ -40,6 +40,7 @@ def run_example(
     gate: Literal["upper", "two-sided"] | None = None,
     start: States | None = None,
     P0: Covariance | None = None,
+    sigma_f: Reals | None = None,
     keep: Iterable[str] = ("P",),
 ) -> ExampleRuns:
     """Run the simulation example of Fig 6.
@@ -50,6 +51,8 @@ def run_example(
     start (6,) or (runs, 6): Estimate of the state at the first sample; the one that Table 2 prints
         if None.
     P0 (6, 6): Its covariance; that of the scenario, 0.1 I, if None.
+    sigma_f (K, N): Standard deviation that the filter assumes, in Hz, broadcast; that of the
+        scenario if None.
     keep: Fields of the track that are wanted, see `ekf`.
     Raises ValueError if an argument is refused by `simulate` or `ekf`.
 
@@ -75,7 +78,7 @@ def run_example(
         s.P0 if P0 is None else P0,
         s.T,
         s.sigma_a,
-        s.sigma_f,
+        s.sigma_f if sigma_f is None else sigma_f,
         gate=gate,
         keep=keep,
     )

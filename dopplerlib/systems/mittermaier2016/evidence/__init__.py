@@ -5,7 +5,10 @@ import numpy as np
 from ...._hints import checked
 from ...._lazy import attach
 from .chain import chain_evidence
+from .first_covariance import covariance_evidence
+from .other_motion import motion_evidence
 from .printed import printed_evidence
+from .right_models import right_evidence
 from .signal import signal_evidence
 from .start import start_evidence
 from .tracking import tracking_evidence
@@ -31,11 +34,15 @@ def evidence(*, rng: np.random.Generator) -> dict[str, object]:
         If `rng` is not a generator.
     """
     start, tracking, signal, chain = rng.spawn(4)
+    runs, covariances, right, motion = tracking.spawn(4)
     return (
         printed_evidence()
         | signal_evidence(signal)
         | start_evidence(start)
-        | tracking_evidence(tracking)
+        | tracking_evidence(runs)
+        | covariance_evidence(covariances)
+        | right_evidence(right)
+        | motion_evidence(motion)
         | chain_evidence(chain)
     )
 

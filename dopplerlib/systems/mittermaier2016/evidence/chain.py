@@ -8,7 +8,6 @@ from ....evaluation.intervals import quantile_interval
 from ....replication.evidence import Readings
 from ....signal.laws import integrated_snr_for_std
 from ..chain_bounds import position_bound, position_bound_iq, record_length
-from ..chain_errors import track_errors
 from ..end_to_end import track_iq
 from ..published import reported
 
@@ -47,11 +46,7 @@ def _tracks(rng):
     s = reported().scenario
     level = 10 * np.log10(_CN0 / 2000.0)
     iq = simulate_baseband(s, _RUNS, rng=rng, fs=2000.0, snr_db=level, factor=1)
-    found, late = track_iq(iq), track_iq(iq, timestamp="end")
+    found = track_iq(iq)
     end = float(s.time[-1])
     error = 100 * np.abs(found.at(end)[0][:, 0] - s.truth[-1, 0])
-    nis, nis_late = (track_errors(track, (end,)).nis.mean() for track in (found, late))
-    return {
-        "range-from-iq": quantile_interval(error),
-        "nis-notices": float(abs(nis_late / nis - 1)),
-    }
+    return {"range-from-iq": quantile_interval(error)}

@@ -19,6 +19,7 @@ from ....evaluation.consistency import chi2_interval
 from ....evaluation.intervals import ConfidenceInterval, proportion_interval
 from ....model.motion import constant_velocity
 from ....model.simulation import simulate
+from .._assumed import RAISED, assumed_deviation
 from ..published import reported
 
 Errors = Annotated[FloatArray, shaped(1001, 3, check=_checks.measured)]
@@ -40,7 +41,7 @@ OPTIONS = {
         "shared, 0.4 m/s²", "shared, 0.04 m/s²", "shared, 4 m/s²",
         "per axis, 0.4 m/s²", "per axis, 0.04 m/s²",
     ),
-    "noise at the start": ("not raised", "R x 10, 10 samples", "R x 10, 100 samples"),
+    "noise at the start": tuple(RAISED),
 }  # fmt: skip
 
 
@@ -172,9 +173,10 @@ def example_readings(runs: Runs, *, rng: np.random.Generator) -> ExampleReadings
         before = np.linalg.solve(F, starts[start][..., None])[..., 0]
         P0 = np.stack([_covariance(OPTIONS["P0"][c], child) for c in covariance])
         kind, sigma_a = OPTIONS["process noise"][noise].removesuffix(" m/s²").split(", ")
+        deviation = assumed_deviation(OPTIONS["noise at the start"][raised])
         truth, z = simulate(s, each, rng=child)
         track = ekf(
-            z, s.array, before, P0, s.T, float(sigma_a), _deviations(raised),
+            z, s.array, before, P0, s.T, float(sigma_a), deviation,
             kind.replace(" ", "_"), gate="two-sided", keep=(),
         )  # fmt: skip
         error = np.abs(track.x[..., :3] - truth[:, :3])
@@ -261,11 +263,3 @@ def _covariance(name, rng):
         # Barely positive is no covariance that anybody would start with.
         if np.linalg.eigvalsh(P)[0] > 0.01 * scale:
             return P
-
-
-def _deviations(raised):
-    """Return the standard deviation that the filter reports, shape (1001, 1)."""
-    s = reported().scenario
-    deviation = np.full((s.samples, 1), s.sigma_f)
-    deviation[: (0, 10, 100)[raised]] *= np.sqrt(10)
-    return deviation
