@@ -141,7 +141,7 @@ def parabolic_three_highest(
 def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the frequency by Jacobsen and Kootsookos, from three complex bins.
 
-    Arguments and result are those of `peak_bin`.
+    Arguments and result are those of `peak_bin`; NaN for a window that tells no frequency.
 
     Notes
     -----
@@ -163,7 +163,7 @@ def jacobsen(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Fl
 def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return the frequency by Candan: `jacobsen` with a correction of its bias.
 
-    Arguments and result are those of `peak_bin`.
+    Arguments and result are those of `peak_bin`; NaN for a window that tells no frequency.
 
     Notes
     -----
@@ -185,7 +185,7 @@ def candan(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
 def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Quinn's first estimate, from the highest bin and the neighbor on the tone's side.
 
-    Arguments and result are those of `peak_bin`.
+    Arguments and result are those of `peak_bin`; NaN for a window that tells no frequency.
 
     Notes
     -----
@@ -208,7 +208,7 @@ def quinn1(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> Floa
 def quinn2(x: ArrayLike, fs: float, band: Sequence[float] | None = None) -> FloatArray:
     """Return Quinn's second estimate, which weights both neighbors.
 
-    Arguments and result are those of `peak_bin`.
+    Arguments and result are those of `peak_bin`; NaN for a window that tells no frequency.
 
     Notes
     -----
