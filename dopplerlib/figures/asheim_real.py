@@ -5,20 +5,21 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from .._hints import Array, checked
+from .._hints import Array
 from ..tracking.multi_target import ManagedTrack
-from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, TRUTH, styled
+from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, TRUTH, drawing
 
 _LABEL = "SIMULATED"
 
 
-@checked
+@drawing(7.0, 3.4)
 def records(
+    figure: Figure,
     time: Array,
     panels: dict[str, dict[str, Array]],
     window: tuple[float, float],
     gap: tuple[float, float],
-) -> Figure:
+) -> None:
     """Draw detections, the chosen ones and the filtered range over time (Figs 6.1 to 6.4).
 
     time (K,): Time of each scan in s.
@@ -27,55 +28,52 @@ def records(
     window: Ranges between which the radar sees something, in m.
     gap: Between these times nothing is seen, in s.
     """
-    with styled(7.0, 3.4) as figure:
-        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
-        for ax, (title, data) in zip(axes, panels.items(), strict=True):
-            ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
-            for edge in window:
-                ax.axhline(edge, color=BOUND, lw=0.8, ls=":")
-            d = data["detections"]
-            ax.plot(np.repeat(time, d.shape[1]), d.ravel(), "o", mfc="none", mec=MEASURED, ms=4,
-                    label="detections")  # fmt: skip
-            if "truth" in data:
-                ax.plot(time, data["truth"], color=TRUTH, ls="--", label="true")
-            if "chosen" in data:
-                ax.plot(time, data["chosen"], "o", color=SENSOR, ms=4, label="chosen")
-            if "filtered" in data:
-                ax.plot(time, data["filtered"], "+", color=OURS, ms=6, mew=1.4, label="filtered")
-            ax.set(title=f"{_LABEL}: {title}", xlabel="time (s)", ylim=(0.5, 7.5))
-        axes[0].set_ylabel("range (m)")
-        handles, labels = axes[-1].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=4)
-        return figure
+    axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    for ax, (title, data) in zip(axes, panels.items(), strict=True):
+        ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
+        for edge in window:
+            ax.axhline(edge, color=BOUND, lw=0.8, ls=":")
+        d = data["detections"]
+        ax.plot(np.repeat(time, d.shape[1]), d.ravel(), "o", mfc="none", mec=MEASURED, ms=4,
+                label="detections")  # fmt: skip
+        if "truth" in data:
+            ax.plot(time, data["truth"], color=TRUTH, ls="--", label="true")
+        if "chosen" in data:
+            ax.plot(time, data["chosen"], "o", color=SENSOR, ms=4, label="chosen")
+        if "filtered" in data:
+            ax.plot(time, data["filtered"], "+", color=OURS, ms=6, mew=1.4, label="filtered")
+        ax.set(title=f"{_LABEL}: {title}", xlabel="time (s)", ylim=(0.5, 7.5))
+    axes[0].set_ylabel("range (m)")
+    handles, labels = axes[-1].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
 
 
-@checked
-def positions(truth: Array, raw: Array, estimate: Array, sensors: Array) -> Figure:
+@drawing(5.0, 4.6)
+def positions(figure: Figure, truth: Array, raw: Array, estimate: Array, sensors: Array) -> None:
     """Draw triangulated positions in the plane (Fig 6.4(c)).
 
     truth, raw, estimate (K, 2): Positions in m.
     sensors (2, 2): Positions of the radars in m.
     """
-    with styled(5.0, 4.6) as figure:
-        ax = figure.subplots()
-        ax.plot(*raw.T, "o", mfc="none", mec=MEASURED, ms=5, label="detections, triangulated")
-        ax.plot(*estimate.T, "+", color=OURS, ms=7, mew=1.5, label="filtered, triangulated")
-        ax.plot(*truth.T, color=TRUTH, ls="--", label="true")
-        ax.plot(*sensors.T, "o", color=SENSOR, ms=7)
-        ax.set(title=f"{_LABEL}: position from both radars", xlabel="x (m)", ylabel="y (m)")
-        ax.set(xlim=(-3, 3), ylim=(-0.3, 6.2))
-        ax.legend(loc="lower left", fontsize=8.5)
-        return figure
+    ax = figure.subplots()
+    ax.plot(*raw.T, "o", mfc="none", mec=MEASURED, ms=5, label="detections, triangulated")
+    ax.plot(*estimate.T, "+", color=OURS, ms=7, mew=1.5, label="filtered, triangulated")
+    ax.plot(*truth.T, color=TRUTH, ls="--", label="true")
+    ax.plot(*sensors.T, "o", color=SENSOR, ms=7)
+    ax.set(title=f"{_LABEL}: position from both radars", xlabel="x (m)", ylabel="y (m)")
+    ax.set(xlim=(-3, 3), ylim=(-0.3, 6.2))
+    ax.legend(loc="lower left", fontsize=8.5)
 
 
-@checked
+@drawing(7.0, 3.2)
 def coasting(
+    figure: Figure,
     time: Array,
     truth: Sequence[Array],
     runs: Sequence[Array],
     gap: tuple[float, float],
     titles: Sequence[str],
-) -> Figure:
+) -> None:
     """Draw the filtered ranges of many walks through the gap.
 
     time (K,): Time of each scan in s.
@@ -84,28 +82,27 @@ def coasting(
     gap: Between these times nothing is seen, in s.
     titles: One for each panel.
     """
-    with styled(7.0, 3.2) as figure:
-        axes = figure.subplots(1, len(runs), sharey=True)
-        for ax, true, d, title in zip(axes, truth, runs, titles, strict=True):
-            ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
-            ax.plot(time, d.T, color=OURS, lw=0.6, alpha=0.5)
-            ax.plot([], [], color=OURS, lw=0.8, label=f"filtered, {len(d)} walks")
-            ax.plot(time, true, color=ORANGE, ls="--", lw=2, label="true")
-            ax.set(title=f"{_LABEL}: {title}", xlabel="time (s)", ylim=(0, 12))
-            ax.legend(loc="upper left")
-        axes[0].set_ylabel("range (m)")
-        return figure
+    axes = figure.subplots(1, len(runs), sharey=True)
+    for ax, true, d, title in zip(axes, truth, runs, titles, strict=True):
+        ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
+        ax.plot(time, d.T, color=OURS, lw=0.6, alpha=0.5)
+        ax.plot([], [], color=OURS, lw=0.8, label=f"filtered, {len(d)} walks")
+        ax.plot(time, true, color=ORANGE, ls="--", lw=2, label="true")
+        ax.set(title=f"{_LABEL}: {title}", xlabel="time (s)", ylim=(0, 12))
+        ax.legend(loc="upper left")
+    axes[0].set_ylabel("range (m)")
 
 
-@checked
+@drawing(7.0, 3.3)
 def managed(
+    figure: Figure,
     time: Array,
     detections: Array,
     tracks: Sequence[ManagedTrack],
     truth: Array,
     gap: tuple[float, float],
     alternative: Array,
-) -> Figure:
+) -> None:
     """Draw confirmed tracks of one record, and a single track with probabilistic association.
 
     time (K,): Time of each scan in s.
@@ -115,25 +112,23 @@ def managed(
     gap: Between these times nothing is seen, in s.
     alternative (K,): Ranges of the filter with association by probability, in m.
     """
-    with styled(7.0, 3.3) as figure:
-        left, right = figure.subplots(1, 2, sharey=True)
-        for ax in (left, right):
-            ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
-            ax.plot(np.repeat(time, detections.shape[1]), detections.ravel(), "o", mfc="none",
-                    mec=MEASURED, ms=4, label="detections")  # fmt: skip
-            ax.plot(time, truth, color=TRUTH, ls="--", label="true")
-            ax.set(xlabel="time (s)", ylim=(0.5, 6.5))
-        for i, (track, color) in enumerate(
-            zip(tracks, (OURS, ORANGE, SENSOR, PINK) * len(tracks), strict=False)
-        ):
-            left.plot(time[track.scan], track.x[:, 0], color=color, marker=".", ms=4,
-                      label="confirmed tracks" if i == 0 else None)  # fmt: skip
-        right.plot(time, alternative, color=OURS, marker=".", ms=4, label="PDA")
-        left.set(title=f"{_LABEL}: managed tracks", ylabel="range (m)")
-        right.set_title(f"{_LABEL}: one track, PDA")
-        entries = {}
-        for ax in (left, right):
-            for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
-                entries.setdefault(label, handle)
-        figure.legend(entries.values(), entries, loc="outside lower center", ncols=4, fontsize=8.5)
-        return figure
+    left, right = figure.subplots(1, 2, sharey=True)
+    for ax in (left, right):
+        ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
+        ax.plot(np.repeat(time, detections.shape[1]), detections.ravel(), "o", mfc="none",
+                mec=MEASURED, ms=4, label="detections")  # fmt: skip
+        ax.plot(time, truth, color=TRUTH, ls="--", label="true")
+        ax.set(xlabel="time (s)", ylim=(0.5, 6.5))
+    for i, (track, color) in enumerate(
+        zip(tracks, (OURS, ORANGE, SENSOR, PINK) * len(tracks), strict=False)
+    ):
+        left.plot(time[track.scan], track.x[:, 0], color=color, marker=".", ms=4,
+                  label="confirmed tracks" if i == 0 else None)  # fmt: skip
+    right.plot(time, alternative, color=OURS, marker=".", ms=4, label="PDA")
+    left.set(title=f"{_LABEL}: managed tracks", ylabel="range (m)")
+    right.set_title(f"{_LABEL}: one track, PDA")
+    entries = {}
+    for ax in (left, right):
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    figure.legend(entries.values(), entries, loc="outside lower center", ncols=4, fontsize=8.5)

@@ -3,18 +3,21 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from .._hints import checked
 from ..model.radar_array import RadarArray
 from ..systems.mittermaier2016 import ExampleRuns, PublishedFigure6
-from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, styled
+from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, drawing
 
 _AXES = ("x", "y", "z")
 
 
-@checked
+@drawing(7.0, 4.6)
 def scene(
-    result: ExampleRuns, published: PublishedFigure6, array: RadarArray, run: int = 0
-) -> Figure:
+    figure: Figure,
+    result: ExampleRuns,
+    published: PublishedFigure6,
+    array: RadarArray,
+    run: int = 0,
+) -> None:
     """Draw the paper's 3-D scene: sensors, true path, estimates of one run, published estimates.
 
     result: Our runs.
@@ -22,78 +25,76 @@ def scene(
     array: The sensors.
     run: Which run to draw.
     """
-    with styled(7.0, 4.6) as figure:
-        ax = figure.add_subplot(projection="3d", computed_zorder=False)
-        estimate = result.track.x[run, ::20, :3]
-        ax.plot(*result.truth[:, :3].T, color=TRUTH, label="true path")
-        ax.plot(*published.path.T, "s", color=PUBLISHED, ms=3.5, label="published estimates")
-        ax.plot(*estimate.T, "o", color=OURS, ms=3, label="our estimates")
-        ax.plot(*array.positions.T, "^", color=SENSOR, ms=8, label="sensors")
-        ring = np.linspace(0, 2 * np.pi, 100)
-        radius = np.hypot(*array.positions[0, 1:])
-        ax.plot(0 * ring, radius * np.cos(ring), radius * np.sin(ring), color=SENSOR, lw=0.8)
-        ax.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
-        ax.set(xlim=(0, 1), ylim=(-0.3, 0.3), zlim=(-0.3, 0.3))
-        ax.set_box_aspect((1, 0.6, 0.6), zoom=0.95)
-        # The paper's view: MATLAB counts azimuth from another axis than matplotlib does.
-        ax.view_init(elev=30, azim=120)
-        figure.legend(*ax.get_legend_handles_labels(), loc="upper right")
-        return figure
+    ax = figure.add_subplot(projection="3d", computed_zorder=False)
+    estimate = result.track.x[run, ::20, :3]
+    ax.plot(*result.truth[:, :3].T, color=TRUTH, label="true path")
+    ax.plot(*published.path.T, "s", color=PUBLISHED, ms=3.5, label="published estimates")
+    ax.plot(*estimate.T, "o", color=OURS, ms=3, label="our estimates")
+    ax.plot(*array.positions.T, "^", color=SENSOR, ms=8, label="sensors")
+    ring = np.linspace(0, 2 * np.pi, 100)
+    radius = np.hypot(*array.positions[0, 1:])
+    ax.plot(0 * ring, radius * np.cos(ring), radius * np.sin(ring), color=SENSOR, lw=0.8)
+    ax.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
+    ax.set(xlim=(0, 1), ylim=(-0.3, 0.3), zlim=(-0.3, 0.3))
+    ax.set_box_aspect((1, 0.6, 0.6), zoom=0.95)
+    # The paper's view: MATLAB counts azimuth from another axis than matplotlib does.
+    ax.view_init(elev=30, azim=120)
+    figure.legend(*ax.get_legend_handles_labels(), loc="upper right")
 
 
-@checked
-def errors(result: ExampleRuns, published: PublishedFigure6, run: int = 0) -> Figure:
+@drawing(7.0, 5.2)
+def errors(figure: Figure, result: ExampleRuns, published: PublishedFigure6, run: int = 0) -> None:
     """Draw the absolute position errors of one run, and the published ones, axis by axis.
 
     result: Our runs.
     published: The digitized figure.
     run: Which run to draw.
     """
-    with styled(7.0, 5.2) as figure:
-        axes = figure.subplots(3, sharex=True, sharey=True)
-        for i, (ax, name) in enumerate(zip(axes, _AXES, strict=True)):
-            ax.plot(published.time, 100 * published.error[:, i], color=PUBLISHED, label="published")
-            ax.plot(result.time, 100 * result.error[run, :, i], color=OURS, label="ours, one run")
-            ax.set(ylabel=f"error of {name} (cm)", ylim=(0, 16))
-        axes[0].legend(loc="upper right")
-        axes[-1].set(xlabel="time (s)", xlim=(0, 1))
-        return figure
+    axes = figure.subplots(3, sharex=True, sharey=True)
+    for i, (ax, name) in enumerate(zip(axes, _AXES, strict=True)):
+        ax.plot(published.time, 100 * published.error[:, i], color=PUBLISHED, label="published")
+        ax.plot(result.time, 100 * result.error[run, :, i], color=OURS, label="ours, one run")
+        ax.set(ylabel=f"error of {name} (cm)", ylim=(0, 16))
+    axes[0].legend(loc="upper right")
+    axes[-1].set(xlabel="time (s)", xlim=(0, 1))
 
 
-@checked
-def error_bands(result: ExampleRuns, published: PublishedFigure6) -> Figure:
+@drawing(7.0, 6.4)
+def error_bands(figure: Figure, result: ExampleRuns, published: PublishedFigure6) -> None:
     """Draw percentile bands of the absolute errors over all runs, and the published curves.
 
     result: Our runs.
     published: The digitized figure.
     """
     runs = len(result.error)
-    with styled(7.0, 6.4) as figure:
-        axes = figure.subplots(3, sharex=True, sharey=True)
-        for i, (ax, name) in enumerate(zip(axes, _AXES, strict=True)):
-            band = 1000 * np.percentile(result.error[:, :, i], [2.5, 25, 50, 75, 97.5], axis=0)
-            ax.fill_between(
-                result.time, band[0], band[4], color=OURS, alpha=0.2, lw=0,
-                label=f"central 95 % of {runs} runs",
-            )  # fmt: skip
-            ax.fill_between(
-                result.time, band[1], band[3], color=OURS, alpha=0.35, lw=0, label="central 50 %"
-            )
-            ax.plot(result.time, band[2], color=OURS, label="median")
-            ax.plot(
-                published.time, 1000 * published.error[:, i], color=PUBLISHED, lw=1,
-                label="published run",
-            )  # fmt: skip
-            ax.set(ylabel=f"error of {name} (mm)", yscale="log", ylim=(0.01, 400))
-        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
-        axes[-1].set(xlabel="time (s)", xlim=(0, 1))
-        return figure
+    axes = figure.subplots(3, sharex=True, sharey=True)
+    for i, (ax, name) in enumerate(zip(axes, _AXES, strict=True)):
+        band = 1000 * np.percentile(result.error[:, :, i], [2.5, 25, 50, 75, 97.5], axis=0)
+        ax.fill_between(
+            result.time, band[0], band[4], color=OURS, alpha=0.2, lw=0,
+            label=f"central 95 % of {runs} runs",
+        )  # fmt: skip
+        ax.fill_between(
+            result.time, band[1], band[3], color=OURS, alpha=0.35, lw=0, label="central 50 %"
+        )
+        ax.plot(result.time, band[2], color=OURS, label="median")
+        ax.plot(
+            published.time, 1000 * published.error[:, i], color=PUBLISHED, lw=1,
+            label="published run",
+        )  # fmt: skip
+        ax.set(ylabel=f"error of {name} (mm)", yscale="log", ylim=(0.01, 400))
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    axes[-1].set(xlabel="time (s)", xlim=(0, 1))
 
 
-@checked
+@drawing(7.0, 5.0)
 def nis(
-    result: ExampleRuns, published: PublishedFigure6, interval: tuple[float, ...], run: int = 0
-) -> Figure:
+    figure: Figure,
+    result: ExampleRuns,
+    published: PublishedFigure6,
+    interval: tuple[float, ...],
+    run: int = 0,
+) -> None:
     """Draw NIS of one run above the published NIS, with the samples that were not used.
 
     result: Our runs.
@@ -103,53 +104,50 @@ def nis(
     """
     ours = result.track.nis[run], ~result.track.updated[run], "ours, one run", OURS
     theirs = published.nis, published.skipped, "published", PUBLISHED
-    with styled(7.0, 5.0) as figure:
-        axes = figure.subplots(2, sharex=True, sharey=True)
-        for ax, (values, skipped, label, color) in zip(axes, (ours, theirs), strict=True):
-            ax.plot(result.time, values, color=color, lw=0.6, alpha=0.7)
-            ax.plot(
-                result.time[skipped], values[skipped], "o", mfc="none", color=TRUTH, ms=4.5,
-                label=f"{label}: {skipped.sum()} samples not used",
-            )  # fmt: skip
-            for bound in interval:
-                ax.axhline(bound, color=BOUND, ls="--", lw=1)
-            ax.legend(loc="upper left", facecolor="white", frameon=True, framealpha=0.9)
-            ax.set(ylabel="NIS", ylim=(0, 30))
-        axes[-1].set(xlabel="time (s)", xlim=(0, 1))
-        return figure
+    axes = figure.subplots(2, sharex=True, sharey=True)
+    for ax, (values, skipped, label, color) in zip(axes, (ours, theirs), strict=True):
+        ax.plot(result.time, values, color=color, lw=0.6, alpha=0.7)
+        ax.plot(
+            result.time[skipped], values[skipped], "o", mfc="none", color=TRUTH, ms=4.5,
+            label=f"{label}: {skipped.sum()} samples not used",
+        )  # fmt: skip
+        for bound in interval:
+            ax.axhline(bound, color=BOUND, ls="--", lw=1)
+        ax.legend(loc="upper left", facecolor="white", frameon=True, framealpha=0.9)
+        ax.set(ylabel="NIS", ylim=(0, 30))
+    axes[-1].set(xlabel="time (s)", xlim=(0, 1))
 
 
-@checked
+@drawing(7.0, 3.4)
 def nis_averages(
+    figure: Figure,
     results: dict[str, ExampleRuns],
     published_average: dict[str, float],
     interval: tuple[float, ...],
-) -> Figure:
+) -> None:
     """Draw the distribution over runs of the time average of NIS, for several filters.
 
     results: Runs of each filter, by label.
     published_average: Published averages, by label.
     interval: In which the average of a consistent filter lies.
     """
-    with styled(7.0, 3.4) as figure:
-        ax = figure.subplots()
-        for (label, result), (color, ls) in zip(results.items(), VARIANTS, strict=False):
-            average = np.sort(result.track.nis.mean(axis=-1))
-            share = np.arange(1, len(average) + 1) / len(average)
-            ax.step(average, share, where="post", color=color, ls=ls, label=label)
-        ax.axvspan(*interval, color=BOUND, alpha=0.25, lw=0, label="95 % if consistent")
-        for (label, value), style in zip(published_average.items(), ("-", ":"), strict=False):
-            ax.axvline(value, color=TRUTH, ls=style, lw=1.2, label=label)
-        ax.set(xscale="log", xlim=(5, 100), ylim=(0, 1))
-        ax.set_xticks([5, 6, 8, 10, 20, 50, 100], ["5", "6", "8", "10", "20", "50", "100"])
-        ax.set_xticks([], minor=True)
-        ax.set(xlabel="NIS averaged over one run", ylabel="fraction of runs below")
-        ax.legend(loc="lower right")
-        return figure
+    ax = figure.subplots()
+    for (label, result), (color, ls) in zip(results.items(), VARIANTS, strict=False):
+        average = np.sort(result.track.nis.mean(axis=-1))
+        share = np.arange(1, len(average) + 1) / len(average)
+        ax.step(average, share, where="post", color=color, ls=ls, label=label)
+    ax.axvspan(*interval, color=BOUND, alpha=0.25, lw=0, label="95 % if consistent")
+    for (label, value), style in zip(published_average.items(), ("-", ":"), strict=False):
+        ax.axvline(value, color=TRUTH, ls=style, lw=1.2, label=label)
+    ax.set(xscale="log", xlim=(5, 100), ylim=(0, 1))
+    ax.set_xticks([5, 6, 8, 10, 20, 50, 100], ["5", "6", "8", "10", "20", "50", "100"])
+    ax.set_xticks([], minor=True)
+    ax.set(xlabel="NIS averaged over one run", ylabel="fraction of runs below")
+    ax.legend(loc="lower right")
 
 
-@checked
-def skipped_counts(result: ExampleRuns, published: PublishedFigure6) -> Figure:
+@drawing(7.0, 3.8)
+def skipped_counts(figure: Figure, result: ExampleRuns, published: PublishedFigure6) -> None:
     """Draw the number of samples that each run did not use: too good against too bad.
 
     result: Runs with the two-sided gate.
@@ -161,13 +159,11 @@ def skipped_counts(result: ExampleRuns, published: PublishedFigure6) -> Figure:
         low = np.sum(skipped & (values < 6), axis=-1)
         return low, np.sum(skipped, axis=-1) - low
 
-    with styled(7.0, 3.8) as figure:
-        ax = figure.subplots()
-        low, high = counts(result.track.nis, ~result.track.updated)
-        ax.plot(low, high, "o", color=OURS, ms=3, alpha=0.3, mec="none", label="our runs")
-        low, high = counts(published.nis, published.skipped)
-        ax.plot(low, high, "D", color=PUBLISHED, ms=8, mec="white", label="published run")
-        ax.set(yscale="log", ylim=(8, 1100))
-        ax.set(xlabel="number of samples below the gate", ylabel="number of samples above")
-        ax.legend(loc="upper right")
-        return figure
+    ax = figure.subplots()
+    low, high = counts(result.track.nis, ~result.track.updated)
+    ax.plot(low, high, "o", color=OURS, ms=3, alpha=0.3, mec="none", label="our runs")
+    low, high = counts(published.nis, published.skipped)
+    ax.plot(low, high, "D", color=PUBLISHED, ms=8, mec="white", label="published run")
+    ax.set(yscale="log", ylim=(8, 1100))
+    ax.set(xlabel="number of samples below the gate", ylabel="number of samples above")
+    ax.legend(loc="upper right")

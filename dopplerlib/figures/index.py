@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from .._hints import Array, checked
+from .._hints import Array
 from ..model.scenario import Scenario
 from .style import (
     BOUND,
@@ -14,24 +14,25 @@ from .style import (
     SENSOR,
     TRUTH,
     doppler_lines,
+    drawing,
     project,
     sensor_colors,
-    styled,
 )
 
 _FLOOR = -0.27  # m below the middle of the ring
 _GRID = "#DDDDDD"
 
 
-@checked
+@drawing(7, 6.4)
 def hero(
+    figure: Figure,
     scenario: Scenario,
     z: Array,
     tracks: Array,
     start: Array,
     azimuth: float = -62.0,
     elevation: float = 16.0,
-) -> Figure:
+) -> None:
     """Draw one record of Doppler shifts, the tracks of many, and their errors.
 
     scenario: Ring of sensors, true path and its sampling.
@@ -40,16 +41,14 @@ def hero(
     start (6,): State with which every run starts.
     azimuth, elevation: From where the scene is seen, in degrees; see `project`.
     """
-    with styled(7, 6.4) as figure:
-        grid = figure.add_gridspec(2, 2, height_ratios=(1.45, 1))
-        scene = figure.add_subplot(grid[0, :])
-        _draw_scene(scene, scenario, tracks, start, lambda p: project(p, azimuth, elevation))
-        curves = figure.add_subplot(grid[1, 0])
-        doppler_lines(curves, scenario.time, z)
-        curves.set_title("Measured: six Doppler shifts (one run)")
-        errors = figure.add_subplot(grid[1, 1])
-        _draw_errors(errors, scenario, tracks)
-        return figure
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.45, 1))
+    scene = figure.add_subplot(grid[0, :])
+    _draw_scene(scene, scenario, tracks, start, lambda p: project(p, azimuth, elevation))
+    curves = figure.add_subplot(grid[1, 0])
+    doppler_lines(curves, scenario.time, z)
+    curves.set_title("Measured: six Doppler shifts (one run)")
+    errors = figure.add_subplot(grid[1, 1])
+    _draw_errors(errors, scenario, tracks)
 
 
 def _draw_scene(ax, scenario, tracks, start, view):

@@ -5,42 +5,43 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from .._hints import Array, checked
-from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, styled
+from .._hints import Array
+from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, drawing
 
 
-def sketches() -> Figure:
+@drawing(7.0, 4.4)
+def sketches(figure: Figure) -> None:
     """Draw frequency over time for the six waveforms, not to scale."""
-    with styled(7.0, 4.4) as figure:
-        axes = figure.subplots(2, 3, sharex=True, sharey=True)
-        pulse, lfm, fsk, slopes, mfsk, rapid = axes.ravel()
-        for start in np.arange(0.02, 1, 0.25):
-            pulse.plot([start, start + 0.04], [0.5, 0.5], color=OURS, lw=5, solid_capstyle="butt")
-        lfm.plot([0, 0.5, 1], [0, 1, 0], color=OURS)
-        lfm.plot([0.06, 0.56, 1.06], [0.06, 1.06, 0.06], color=BOUND, ls="--")
-        for n in range(10):
-            ends = [n / 10, (n + 1) / 10]
-            fsk.plot(ends, [0.35 + 0.3 * (n % 2)] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
-        slopes.plot([0, 0.25, 0.5, 0.75, 1], [0, 1, 0, 0.6, 0], color=OURS)
-        for n in range(20):
-            ends = [n / 20, (n + 1) / 20]
-            height = (n // 2) / 11 + 0.12 * (n % 2)
-            mfsk.plot(ends, [height] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
-        for n in range(8):
-            rapid.plot([n / 8, (n + 1) / 8], [0, 1], color=OURS)
-        titles = (
-            "pulses", "chirps (LFM)", "two tones (FSK)",
-            "several slopes", "MFSK", "rapid chirps",
-        )  # fmt: skip
-        for ax, title in zip(axes.ravel(), titles, strict=True):
-            ax.set(title=title, xlim=(0, 1), ylim=(-0.08, 1.15), xticks=[], yticks=[])
-        figure.supxlabel("time (not to scale)")
-        figure.supylabel("frequency (not to scale)")
-        return figure
+    axes = figure.subplots(2, 3, sharex=True, sharey=True)
+    pulse, lfm, fsk, slopes, mfsk, rapid = axes.ravel()
+    for start in np.arange(0.02, 1, 0.25):
+        pulse.plot([start, start + 0.04], [0.5, 0.5], color=OURS, lw=5, solid_capstyle="butt")
+    lfm.plot([0, 0.5, 1], [0, 1, 0], color=OURS)
+    lfm.plot([0.06, 0.56, 1.06], [0.06, 1.06, 0.06], color=BOUND, ls="--")
+    for n in range(10):
+        ends = [n / 10, (n + 1) / 10]
+        fsk.plot(ends, [0.35 + 0.3 * (n % 2)] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
+    slopes.plot([0, 0.25, 0.5, 0.75, 1], [0, 1, 0, 0.6, 0], color=OURS)
+    for n in range(20):
+        ends = [n / 20, (n + 1) / 20]
+        height = (n // 2) / 11 + 0.12 * (n % 2)
+        mfsk.plot(ends, [height] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
+    for n in range(8):
+        rapid.plot([n / 8, (n + 1) / 8], [0, 1], color=OURS)
+    titles = (
+        "pulses", "chirps (LFM)", "two tones (FSK)",
+        "several slopes", "MFSK", "rapid chirps",
+    )  # fmt: skip
+    for ax, title in zip(axes.ravel(), titles, strict=True):
+        ax.set(title=title, xlim=(0, 1), ylim=(-0.08, 1.15), xticks=[], yticks=[])
+    figure.supxlabel("time (not to scale)")
+    figure.supylabel("frequency (not to scale)")
 
 
-@checked
-def pulses(distance: Array, signal: Array, v: Array, doppler: dict[str, Array]) -> Figure:
+@drawing(7.0, 2.8)
+def pulses(
+    figure: Figure, distance: Array, signal: Array, v: Array, doppler: dict[str, Array]
+) -> None:
     """Draw the echoes of one pulse, and the Doppler spectrum of the samples at each echo.
 
     distance (samples,): Range in m.
@@ -48,128 +49,120 @@ def pulses(distance: Array, signal: Array, v: Array, doppler: dict[str, Array]) 
     v (pulses,): Range rates in m/s, in rising order.
     doppler (pulses,): For each label the power in dB.
     """
-    with styled(7.0, 2.8) as figure:
-        left, right = figure.subplots(1, 2)
-        left.plot(distance, np.abs(signal), color=OURS, lw=1)
-        left.set(xlabel="range from the delay (m)", ylabel="amplitude of one pulse")
-        styles = ((OURS, "-"), (PUBLISHED, "--"), (ORANGE, "-."))
-        for (label, power), (color, ls) in zip(doppler.items(), styles, strict=False):
-            right.plot(v, power, color=color, ls=ls, label=label)
-        right.set(xlabel="range rate (m/s)", ylabel="relative power (dB)", ylim=(-60, 22))
-        right.legend(loc="upper center", ncols=2)
-        return figure
+    left, right = figure.subplots(1, 2)
+    left.plot(distance, np.abs(signal), color=OURS, lw=1)
+    left.set(xlabel="range from the delay (m)", ylabel="amplitude of one pulse")
+    styles = ((OURS, "-"), (PUBLISHED, "--"), (ORANGE, "-."))
+    for (label, power), (color, ls) in zip(doppler.items(), styles, strict=False):
+        right.plot(v, power, color=color, ls=ls, label=label)
+    right.set(xlabel="range rate (m/s)", ylabel="relative power (dB)", ylim=(-60, 22))
+    right.legend(loc="upper center", ncols=2)
 
 
-@checked
+@drawing(7.0, 4.0)
 def ghosts(
+    figure: Figure,
     cases: dict[str, tuple[Array, Sequence[Array], Array, Array]],
     reach: tuple[float, float],
-) -> Figure:
+) -> None:
     """Draw the lines of the chirps' beat frequencies in the plane of range and range rate.
 
     cases: For each title: rows of `chirp_relation`, tones of each chirp in Hz, and (pairs, 2) found
         and (targets, 2) true ranges in m and range rates in m/s.
     reach: Limits of the range axis in m.
     """
-    with styled(7.0, 4.0) as figure:
-        axes = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
-        colors = ((OURS, "-"), (ORANGE, "--"), (PINK, "-."), (BOUND, ":"))
-        for ax, (title, case) in zip(axes, cases.items(), strict=True):
-            relations, frequencies, found, targets = case
-            r = np.array(reach)
-            for (a, b), tones, (color, ls) in zip(relations, frequencies, colors, strict=False):
-                for i, tone in enumerate(tones):
-                    name = f"chirp of {a * 149_896_229.0 / 1e9:+.1f} GHz/s" if i == 0 else None
-                    ax.plot(r, (tone - a * r) / b, color=color, ls=ls, lw=1.1, label=name)
-            ax.plot(*np.transpose(targets), "o", mfc="none", mec=TRUTH, ms=11, label="target")
-            ax.plot(*np.transpose(found), "x", color=PUBLISHED, mew=2, label="accepted")
-            ax.set(title=title, xlabel="range (m)", xlim=reach, ylim=(-16, 16))
-        axes[0].set_ylabel("range rate (m/s)")
-        handles, labels = axes[-1].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3)
-        return figure
+    axes = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
+    colors = ((OURS, "-"), (ORANGE, "--"), (PINK, "-."), (BOUND, ":"))
+    for ax, (title, case) in zip(axes, cases.items(), strict=True):
+        relations, frequencies, found, targets = case
+        r = np.array(reach)
+        for (a, b), tones, (color, ls) in zip(relations, frequencies, colors, strict=False):
+            for i, tone in enumerate(tones):
+                name = f"chirp of {a * 149_896_229.0 / 1e9:+.1f} GHz/s" if i == 0 else None
+                ax.plot(r, (tone - a * r) / b, color=color, ls=ls, lw=1.1, label=name)
+        ax.plot(*np.transpose(targets), "o", mfc="none", mec=TRUTH, ms=11, label="target")
+        ax.plot(*np.transpose(found), "x", color=PUBLISHED, mew=2, label="accepted")
+        ax.set(title=title, xlabel="range (m)", xlim=reach, ylim=(-16, 16))
+    axes[0].set_ylabel("range rate (m/s)")
+    handles, labels = axes[-1].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
 
 
-@checked
-def solved(cases: dict[str, Array], targets: dict[str, Array]) -> Figure:
+@drawing(7.0, 3.0)
+def solved(figure: Figure, cases: dict[str, Array], targets: dict[str, Array]) -> None:
     """Draw solutions of the MFSK system for many records, beside the targets.
 
     cases (..., 2): Ranges in m and range rates in m/s for each title.
     targets (targets, 2): The true ones.
     """
-    with styled(7.0, 3.0) as figure:
-        axes = figure.subplots(1, len(cases), squeeze=False)[0]
-        for ax, (title, found) in zip(axes, cases.items(), strict=True):
-            ax.plot(*found.reshape(-1, 2).T, ".", color=OURS, ms=3, alpha=0.6, label="solved")
-            ax.plot(*targets[title].T, "o", mfc="none", mec=TRUTH, ms=11, label="target")
-            ax.set(title=title, xlabel="range (m)")
-        axes[0].set_ylabel("range rate (m/s)")
-        axes[0].legend(loc="upper left")
-        return figure
+    axes = figure.subplots(1, len(cases), squeeze=False)[0]
+    for ax, (title, found) in zip(axes, cases.items(), strict=True):
+        ax.plot(*found.reshape(-1, 2).T, ".", color=OURS, ms=3, alpha=0.6, label="solved")
+        ax.plot(*targets[title].T, "o", mfc="none", mec=TRUTH, ms=11, label="target")
+        ax.set(title=title, xlabel="range (m)")
+    axes[0].set_ylabel("range rate (m/s)")
+    axes[0].legend(loc="upper left")
 
 
-@checked
+@drawing(7.0, 3.6)
 def maps(
+    figure: Figure,
     cases: dict[str, tuple[Array, Array, Array, dict[str, tuple[float, float]]]],
     floor: float = -45.0,
-) -> Figure:
+) -> None:
     """Draw range-Doppler maps.
 
     cases: For each title what `range_doppler_map` returns, and {text: (r, v)} to be written into
         it.
     floor: Lowest power of the colors in dB.
     """
-    with styled(7.0, 3.6) as figure:
-        axes = figure.subplots(1, len(cases), squeeze=False)[0]
-        for ax, (title, (r, v, power, labels)) in zip(axes, cases.items(), strict=True):
-            edges = r[0], r[-1], v[0], v[-1]
-            image = ax.imshow(
-                power, origin="lower", aspect="auto", extent=edges,
-                cmap="viridis", vmin=floor, vmax=0, interpolation="nearest",
+    axes = figure.subplots(1, len(cases), squeeze=False)[0]
+    for ax, (title, (r, v, power, labels)) in zip(axes, cases.items(), strict=True):
+        edges = r[0], r[-1], v[0], v[-1]
+        image = ax.imshow(
+            power, origin="lower", aspect="auto", extent=edges,
+            cmap="viridis", vmin=floor, vmax=0, interpolation="nearest",
+        )  # fmt: skip
+        for text, (x, y) in labels.items():
+            ax.annotate(
+                text, (x, y), xytext=(0, 14 if y > 0 else -22), textcoords="offset points",
+                color="white", ha="center", fontsize=9,
+                arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.8},
             )  # fmt: skip
-            for text, (x, y) in labels.items():
-                ax.annotate(
-                    text, (x, y), xytext=(0, 14 if y > 0 else -22), textcoords="offset points",
-                    color="white", ha="center", fontsize=9,
-                    arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.8},
-                )  # fmt: skip
-            ax.grid(False)
-            ax.set(title=title, xlabel="range (m)")
-        axes[0].set_ylabel("range rate (m/s)")
-        figure.colorbar(image, ax=axes, label="relative power (dB)")
-        return figure
+        ax.grid(False)
+        ax.set(title=title, xlabel="range (m)")
+    axes[0].set_ylabel("range rate (m/s)")
+    figure.colorbar(image, ax=axes, label="relative power (dB)")
 
 
-@checked
-def scheme(blocks: Sequence[tuple[str, str]]) -> Figure:
+@drawing(7.0, 2.6)
+def scheme(figure: Figure, blocks: Sequence[tuple[str, str]]) -> None:
     """Draw a processing scheme as boxes in a row, with the output of each.
 
     blocks: From the first to the last; an empty name gives the input.
     """
-    with styled(7.0, 2.6) as figure:
-        ax = figure.subplots()
-        columns = 3
-        for i, (name, out) in enumerate(blocks):
-            row, column = divmod(i, columns)
-            way = 1 if row % 2 == 0 else -1  # every other row runs back
-            x, y = 1.1 * (column if way > 0 else columns - 1 - column), -row
-            ax.text(
-                x, y, name, ha="center", va="center", fontsize=9.5,
-                bbox={"boxstyle": "round,pad=0.5", "fc": "#E8F1F8", "ec": OURS},
-            )  # fmt: skip
-            ax.text(x, y - 0.33, out, ha="center", va="center", fontsize=8.5, color="#555555")
-            if i + 1 < len(blocks):
-                ends = ((x + 0.42 * way, y), (x + 0.68 * way, y))
-                if column == columns - 1:
-                    ends = ((x, y - 0.43), (x, y - 0.75))
-                ax.annotate("", ends[1], ends[0], arrowprops={"arrowstyle": "->", "color": BOUND})
-        ax.set(xlim=(-0.55, 2.75), ylim=(-1.45, 0.3))
-        ax.axis("off")
-        return figure
+    ax = figure.subplots()
+    columns = 3
+    for i, (name, out) in enumerate(blocks):
+        row, column = divmod(i, columns)
+        way = 1 if row % 2 == 0 else -1  # every other row runs back
+        x, y = 1.1 * (column if way > 0 else columns - 1 - column), -row
+        ax.text(
+            x, y, name, ha="center", va="center", fontsize=9.5,
+            bbox={"boxstyle": "round,pad=0.5", "fc": "#E8F1F8", "ec": OURS},
+        )  # fmt: skip
+        ax.text(x, y - 0.33, out, ha="center", va="center", fontsize=8.5, color="#555555")
+        if i + 1 < len(blocks):
+            ends = ((x + 0.42 * way, y), (x + 0.68 * way, y))
+            if column == columns - 1:
+                ends = ((x, y - 0.43), (x, y - 0.75))
+            ax.annotate("", ends[1], ends[0], arrowprops={"arrowstyle": "->", "color": BOUND})
+    ax.set(xlim=(-0.55, 2.75), ylim=(-1.45, 0.3))
+    ax.axis("off")
 
 
-@checked
-def scene(stages: dict[str, dict[str, Array]], truth: Array) -> Figure:
+@drawing(7.0, 3.8)
+def scene(figure: Figure, stages: dict[str, dict[str, Array]], truth: Array) -> None:
     """Draw detections and tracks from above, one panel for each stage.
 
     stages (..., 2): For each title and each label, positions [x, y] in m. Labels that begin with
@@ -177,19 +170,17 @@ def scene(stages: dict[str, dict[str, Array]], truth: Array) -> Figure:
     truth (K, 4): True states of the target.
     """
     dots = {"target": OURS, "stands still": BOUND, "false alarm": ORANGE, "object": SENSOR}
-    with styled(7.0, 3.8) as figure:
-        axes = figure.subplots(1, len(stages), sharex=True, sharey=True, squeeze=False)[0]
-        for ax, (title, groups) in zip(axes, stages.items(), strict=True):
-            named = False
-            for label, xy in groups.items():
-                if label.startswith("track"):
-                    ax.plot(*xy.T, color=PUBLISHED, lw=1.6, label=None if named else "track")
-                    named = True
-                else:
-                    ax.plot(*xy.T, ".", ms=2, color=dots[label], alpha=0.5, label=label)
-            ax.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", lw=1, label="truth")
-            ax.plot(0, 0, "^", color=TRUTH, ms=7)
-            ax.set(title=title, xlabel="x (m)")
-            ax.legend(loc="upper left", fontsize=8, markerscale=3, framealpha=0.9, frameon=True)
-        axes[0].set(ylabel="y (m)", ylim=(-2, 85))
-        return figure
+    axes = figure.subplots(1, len(stages), sharex=True, sharey=True, squeeze=False)[0]
+    for ax, (title, groups) in zip(axes, stages.items(), strict=True):
+        named = False
+        for label, xy in groups.items():
+            if label.startswith("track"):
+                ax.plot(*xy.T, color=PUBLISHED, lw=1.6, label=None if named else "track")
+                named = True
+            else:
+                ax.plot(*xy.T, ".", ms=2, color=dots[label], alpha=0.5, label=label)
+        ax.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", lw=1, label="truth")
+        ax.plot(0, 0, "^", color=TRUTH, ms=7)
+        ax.set(title=title, xlabel="x (m)")
+        ax.legend(loc="upper left", fontsize=8, markerscale=3, framealpha=0.9, frameon=True)
+    axes[0].set(ylabel="y (m)", ylim=(-2, 85))

@@ -5,20 +5,21 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from .._hints import Array, Booleans, checked
+from .._hints import Array, Booleans
 from ..evaluation.intervals import ConfidenceInterval
-from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, plain_log_ticks, styled
+from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, drawing, plain_log_ticks
 
 _KMH = 3.6  # km/h for each m/s
 
 
-@checked
+@drawing(7.0, 3.2)
 def side_by_side(
+    figure: Figure,
     time: Array,
     truth: Array,
     tracks: dict[str, Array],
     limits: tuple[float, float] | None = None,
-) -> Figure:
+) -> None:
     """Draw the path and the speed along x as estimated by several filters.
 
     time (K,): Time in s.
@@ -26,27 +27,25 @@ def side_by_side(
     tracks (runs, K, 4): Estimates of each filter; some runs are drawn.
     limits: Limits of the y axis of the path in m.
     """
-    with styled(7.0, 3.2) as figure:
-        left, right = figure.subplots(1, 2)
-        for (label, x), color in zip(tracks.items(), (OURS, PUBLISHED, ORANGE), strict=False):
-            for i, one in enumerate(x[:10]):
-                name = label if i == 0 else None
-                left.plot(one[:, 0], one[:, 2], color=color, lw=0.7, alpha=0.7, label=name)
-                right.plot(time, _KMH * one[:, 1], color=color, lw=0.7, alpha=0.7, label=name)
-        left.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", label="truth")
-        right.plot(time, _KMH * truth[:, 1], color=TRUTH, ls="--", label="truth")
-        left.set(xlabel="x (m)", ylabel="y (m)")
-        if limits is not None:
-            left.set_ylim(*limits)
-        right.set(xlabel="time (s)", ylabel="$v_x$ (km/h)")
-        left.legend(loc="best")
-        return figure
+    left, right = figure.subplots(1, 2)
+    for (label, x), color in zip(tracks.items(), (OURS, PUBLISHED, ORANGE), strict=False):
+        for i, one in enumerate(x[:10]):
+            name = label if i == 0 else None
+            left.plot(one[:, 0], one[:, 2], color=color, lw=0.7, alpha=0.7, label=name)
+            right.plot(time, _KMH * one[:, 1], color=color, lw=0.7, alpha=0.7, label=name)
+    left.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", label="truth")
+    right.plot(time, _KMH * truth[:, 1], color=TRUTH, ls="--", label="truth")
+    left.set(xlabel="x (m)", ylabel="y (m)")
+    if limits is not None:
+        left.set_ylim(*limits)
+    right.set(xlabel="time (s)", ylabel="$v_x$ (km/h)")
+    left.legend(loc="best")
 
 
-@checked
+@drawing(7.0, 3.2)
 def hole(
-    time: Array, rates: dict[str, Array], v_min: float, deviations: dict[str, Array]
-) -> Figure:
+    figure: Figure, time: Array, rates: dict[str, Array], v_min: float, deviations: dict[str, Array]
+) -> None:
     """Draw the range rates that a clutter rule tests, and the errors during the gap that it leaves.
 
     time (K,): Time in s.
@@ -54,29 +53,28 @@ def hole(
     v_min: Range rate below which a detection is deleted, in m/s.
     deviations (K,): For each way to use the rule, the root mean square position error in m.
     """
-    with styled(7.0, 3.2) as figure:
-        left, right = figure.subplots(1, 2)
-        left.axhspan(-v_min, v_min, color=BOUND, alpha=0.3, lw=0, label="deleted")
-        for (label, rate), (color, ls) in zip(rates.items(), VARIANTS, strict=False):
-            left.plot(time, rate, color=color, ls=ls, label=label)
-        left.set(xlabel="time (s)", ylabel="range rate (m/s)")
-        left.legend(loc="best")
-        for (label, error), (color, ls) in zip(deviations.items(), VARIANTS, strict=False):
-            right.plot(time[1:], error[1:], color=color, ls=ls, label=label)
-        right.set(xlabel="time (s)", ylabel="RMS position error (m)", yscale="log")
-        plain_log_ticks(right.yaxis)
-        right.legend(loc="best")
-        return figure
+    left, right = figure.subplots(1, 2)
+    left.axhspan(-v_min, v_min, color=BOUND, alpha=0.3, lw=0, label="deleted")
+    for (label, rate), (color, ls) in zip(rates.items(), VARIANTS, strict=False):
+        left.plot(time, rate, color=color, ls=ls, label=label)
+    left.set(xlabel="time (s)", ylabel="range rate (m/s)")
+    left.legend(loc="best")
+    for (label, error), (color, ls) in zip(deviations.items(), VARIANTS, strict=False):
+        right.plot(time[1:], error[1:], color=color, ls=ls, label=label)
+    right.set(xlabel="time (s)", ylabel="RMS position error (m)", yscale="log")
+    plain_log_ticks(right.yaxis)
+    right.legend(loc="best")
 
 
-@checked
+@drawing()
 def over_time(
+    figure: Figure,
     time: Array,
     errors: dict[str, Array],
     shaded: Booleans,
     ylabel: str,
     mode: Array | None = None,
-) -> Figure:
+) -> None:
     """Draw the root mean square error of several estimators over time.
 
     time (K,): Time in s.
@@ -87,29 +85,29 @@ def over_time(
     """
     rows = 1 if mode is None else 2
     ratios = [1] if mode is None else [3, 1]
-    with styled(7.0, 3.0 + 1.2 * (rows - 1)) as figure:
-        axes = figure.subplots(rows, 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0]
-        for ax in axes:
-            if shaded.any():
-                ax.axvspan(*time[shaded][[0, -1]], color=BOUND, alpha=0.2, lw=0)
-        for (label, error), (color, ls) in zip(errors.items(), VARIANTS, strict=False):
-            axes[0].plot(time, error, color=color, ls=ls, label=label)
-        axes[0].set(ylabel=ylabel, yscale="log")
-        axes[0].legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize=8.5)
-        if mode is not None:
-            axes[1].plot(time, mode, color=OURS)
-            axes[1].set(ylabel="probability\nof agile", ylim=(0, 1))
-        axes[-1].set_xlabel("time (s)")
-        return figure
+    figure.set_size_inches(7.0, 3.0 + 1.2 * (rows - 1))
+    axes = figure.subplots(rows, 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0]
+    for ax in axes:
+        if shaded.any():
+            ax.axvspan(*time[shaded][[0, -1]], color=BOUND, alpha=0.2, lw=0)
+    for (label, error), (color, ls) in zip(errors.items(), VARIANTS, strict=False):
+        axes[0].plot(time, error, color=color, ls=ls, label=label)
+    axes[0].set(ylabel=ylabel, yscale="log")
+    axes[0].legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize=8.5)
+    if mode is not None:
+        axes[1].plot(time, mode, color=OURS)
+        axes[1].set(ylabel="probability\nof agile", ylim=(0, 1))
+    axes[-1].set_xlabel("time (s)")
 
 
-@checked
+@drawing(7.0, 3.2)
 def crossings(
+    figure: Figure,
     truth: Array,
     estimates: Array,
     shares: dict[str, Sequence[ConfidenceInterval]],
     angles: Sequence[float],
-) -> Figure:
+) -> None:
     """Draw two crossing targets, and the fraction of runs with swapped or merged tracks.
 
     truth (2, K, 4): True states.
@@ -117,21 +115,19 @@ def crossings(
     shares: For each label, the fraction of the runs at each angle.
     angles: In degrees.
     """
-    with styled(7.0, 3.2) as figure:
-        left, right = figure.subplots(1, 2)
-        for one, color in zip(estimates, (OURS, PUBLISHED), strict=True):
-            left.plot(one[:, 0], one[:, 2], color=color, lw=1.3)
-        for one in truth:
-            left.plot(one[:, 0], one[:, 2], color=TRUTH, ls="--", lw=1)
-        left.set(xlabel="x (m)", ylabel="y (m)", title="one run, Hungarian")
-        for (label, share), (color, ls) in zip(shares.items(), VARIANTS, strict=False):
-            middle = np.array([one.value for one in share])
-            ends = np.array([[one.value - one.low, one.high - one.value] for one in share]).T
-            right.errorbar(
-                angles, middle, yerr=ends, color=color, ls=ls, marker="o", ms=3.5, capsize=3,
-                label=label,
-            )  # fmt: skip
-        right.set(xlabel="angle between the paths (degrees)", ylabel="fraction of runs")
-        right.set_ylim(-0.03, 1.03)
-        right.legend(loc="upper right")
-        return figure
+    left, right = figure.subplots(1, 2)
+    for one, color in zip(estimates, (OURS, PUBLISHED), strict=True):
+        left.plot(one[:, 0], one[:, 2], color=color, lw=1.3)
+    for one in truth:
+        left.plot(one[:, 0], one[:, 2], color=TRUTH, ls="--", lw=1)
+    left.set(xlabel="x (m)", ylabel="y (m)", title="one run, Hungarian")
+    for (label, share), (color, ls) in zip(shares.items(), VARIANTS, strict=False):
+        middle = np.array([one.value for one in share])
+        ends = np.array([[one.value - one.low, one.high - one.value] for one in share]).T
+        right.errorbar(
+            angles, middle, yerr=ends, color=color, ls=ls, marker="o", ms=3.5, capsize=3,
+            label=label,
+        )  # fmt: skip
+    right.set(xlabel="angle between the paths (degrees)", ylabel="fraction of runs")
+    right.set_ylim(-0.03, 1.03)
+    right.legend(loc="upper right")

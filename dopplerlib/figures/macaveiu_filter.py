@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from .._hints import Array, checked
+from .._hints import Array
 from ..evaluation.intervals import ConfidenceInterval
 from ..systems.macaveiu2013 import AutomotiveSettings, VehicleRuns, decided_claims
-from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, plain_log_ticks, styled
+from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, drawing, plain_log_ticks
 
 _KMH = 3.6  # km/h for each m/s
 _SETTINGS = {
@@ -19,8 +19,8 @@ _SETTINGS = {
 }
 
 
-@checked
-def three_panels(time: Array, runs: VehicleRuns, run: int = 0) -> Figure:
+@drawing(7.0, 2.7)
+def three_panels(figure: Figure, time: Array, runs: VehicleRuns, run: int = 0) -> None:
     """Draw position and both speeds as in Figs 7 to 11: measurements, truth, estimate.
 
     time (K,): Time in s.
@@ -28,37 +28,36 @@ def three_panels(time: Array, runs: VehicleRuns, run: int = 0) -> Figure:
     run: Which run.
     """
     truth, z, x = runs.path.truth, runs.z[run], runs.x[run]
-    with styled(7.0, 2.7) as figure:
-        axes = figure.subplots(1, 3)
-        for ax, part in zip(axes, ((0, 2), (1,), (3,)), strict=True):
-            if len(part) == 2:
-                lines = [(one[:, 0], one[:, 2]) for one in (z, truth, x)]
-                ax.set(xlabel="x (m)", ylabel="y (m)", title="a")
-                ax.margins(x=0.25)
-            else:
-                (i,) = part
-                lines = [(time, _KMH * one[:, i]) for one in (z, truth, x)]
-                band = _KMH * np.quantile(runs.x[:, 1:, i], [0.025, 0.975], axis=0)
-                ax.fill_between(time[1:], *band, color=OURS, alpha=0.25, lw=0)
-                name = {1: "$v_x$", 3: "$v_y$"}[i]
-                ax.set(xlabel="time (s)", ylabel=f"{name} (km/h)", title={1: "b", 3: "c"}[i])
-                middle = (_KMH * truth[:, i].max() + _KMH * truth[:, i].min()) / 2
-                half = max(5, 0.8 * _KMH * np.ptp(truth[:, i]))
-                ax.set_ylim(middle - half, middle + half)
-            ax.plot(*lines[0], "x", color=BOUND, ms=2.5, mew=0.5, alpha=0.6, label="measured")
-            ax.plot(*lines[2], color=OURS, lw=1.4, label="estimate")
-            ax.plot(*lines[1], color=TRUTH, ls="--", lw=1.2, label="truth")
-        axes[1].legend(loc="upper left", fontsize=8, framealpha=0.9, frameon=True)
-        return figure
+    axes = figure.subplots(1, 3)
+    for ax, part in zip(axes, ((0, 2), (1,), (3,)), strict=True):
+        if len(part) == 2:
+            lines = [(one[:, 0], one[:, 2]) for one in (z, truth, x)]
+            ax.set(xlabel="x (m)", ylabel="y (m)", title="a")
+            ax.margins(x=0.25)
+        else:
+            (i,) = part
+            lines = [(time, _KMH * one[:, i]) for one in (z, truth, x)]
+            band = _KMH * np.quantile(runs.x[:, 1:, i], [0.025, 0.975], axis=0)
+            ax.fill_between(time[1:], *band, color=OURS, alpha=0.25, lw=0)
+            name = {1: "$v_x$", 3: "$v_y$"}[i]
+            ax.set(xlabel="time (s)", ylabel=f"{name} (km/h)", title={1: "b", 3: "c"}[i])
+            middle = (_KMH * truth[:, i].max() + _KMH * truth[:, i].min()) / 2
+            half = max(5, 0.8 * _KMH * np.ptp(truth[:, i]))
+            ax.set_ylim(middle - half, middle + half)
+        ax.plot(*lines[0], "x", color=BOUND, ms=2.5, mew=0.5, alpha=0.6, label="measured")
+        ax.plot(*lines[2], color=OURS, lw=1.4, label="estimate")
+        ax.plot(*lines[1], color=TRUTH, ls="--", lw=1.2, label="truth")
+    axes[1].legend(loc="upper left", fontsize=8, framealpha=0.9, frameon=True)
 
 
-@checked
+@drawing(7.0, 6.0)
 def claim_map(
+    figure: Figure,
     rows: tuple[str, Sequence[float]],
     columns: tuple[str, Sequence[float]],
     shares: dict[str, Array],
     settings: AutomotiveSettings,
-) -> Figure:
+) -> None:
     """Draw the percentage of runs in which each claim holds, over two settings.
 
     rows, columns: Name and values of a setting, as `regions.claim_map` takes them.
@@ -68,32 +67,30 @@ def claim_map(
     """
     (row, heights), (column, widths) = rows, columns
     x, y = widths.index(getattr(settings, column)), heights.index(getattr(settings, row))
-    with styled(7.0, 6.0) as figure:
-        axes = figure.subplots(2, 2, sharex=True, sharey=True)
-        for ax, (title, share) in zip(axes.ravel(), shares.items(), strict=True):
-            ax.imshow(share[0], origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=1)
-            verdict = decided_claims(share)
-            for (i, j), value in np.ndenumerate(share[0]):
-                color = "black" if value > 0.6 else "white"
-                middle = f"{100 * value:.0f}"
-                ends = f"{100 * share[1, i, j]:.0f}\N{EN DASH}{100 * share[2, i, j]:.0f}"
-                ax.text(j, i + 0.17, middle, ha="center", va="center", color=color, size=8.5)
-                ax.text(j, i - 0.23, ends, ha="center", va="center", color=color, size=6.5)
-                if not verdict[i, j]:
-                    undecided = Rectangle((j - 0.5, i - 0.5), 1, 1, fc="none", ec=color, lw=0)
-                    undecided.set(hatch="////", alpha=0.4)
-                    ax.add_patch(undecided)
-            _surround(ax, verdict > 0)
-            ax.plot(x, y, "s", mfc="none", mec=OURS, ms=24, mew=2)
-            ax.grid(False)
-            ax.set_xticks(range(len(widths)), [f"{one:g}" for one in widths])
-            ax.set_yticks(range(len(heights)), [f"{one:g}" for one in heights])
-            ax.set_title(title)
-        for ax in axes[-1]:
-            ax.set_xlabel(_SETTINGS[column])
-        for ax in axes[:, 0]:
-            ax.set_ylabel(_SETTINGS[row])
-        return figure
+    axes = figure.subplots(2, 2, sharex=True, sharey=True)
+    for ax, (title, share) in zip(axes.ravel(), shares.items(), strict=True):
+        ax.imshow(share[0], origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=1)
+        verdict = decided_claims(share)
+        for (i, j), value in np.ndenumerate(share[0]):
+            color = "black" if value > 0.6 else "white"
+            middle = f"{100 * value:.0f}"
+            ends = f"{100 * share[1, i, j]:.0f}\N{EN DASH}{100 * share[2, i, j]:.0f}"
+            ax.text(j, i + 0.17, middle, ha="center", va="center", color=color, size=8.5)
+            ax.text(j, i - 0.23, ends, ha="center", va="center", color=color, size=6.5)
+            if not verdict[i, j]:
+                undecided = Rectangle((j - 0.5, i - 0.5), 1, 1, fc="none", ec=color, lw=0)
+                undecided.set(hatch="////", alpha=0.4)
+                ax.add_patch(undecided)
+        _surround(ax, verdict > 0)
+        ax.plot(x, y, "s", mfc="none", mec=OURS, ms=24, mew=2)
+        ax.grid(False)
+        ax.set_xticks(range(len(widths)), [f"{one:g}" for one in widths])
+        ax.set_yticks(range(len(heights)), [f"{one:g}" for one in heights])
+        ax.set_title(title)
+    for ax in axes[-1]:
+        ax.set_xlabel(_SETTINGS[column])
+    for ax in axes[:, 0]:
+        ax.set_ylabel(_SETTINGS[row])
 
 
 def _surround(ax, inside):
@@ -105,13 +102,14 @@ def _surround(ax, inside):
         ax.plot([j - 1.5, j - 0.5], [i - 0.5] * 2, color=PUBLISHED, lw=2.5, clip_on=False)
 
 
-@checked
+@drawing(7.0, 3.2)
 def lags(
+    figure: Figure,
     w: Array,
     predicted: Array,
     noise: Array,
     measured: dict[float, tuple[ConfidenceInterval, ConfidenceInterval]],
-) -> Figure:
+) -> None:
     """Draw lag and residual noise over the velocity step of the filter.
 
     w (M,): Velocity steps of the filter in m/s.
@@ -119,45 +117,42 @@ def lags(
     noise (M, 2): Predicted deviation by noise.
     measured: For some w, the mean error of position and speed in many runs.
     """
-    with styled(7.0, 3.2) as figure:
-        for i, ax in enumerate(figure.subplots(1, 2)):
-            ax.plot(w, predicted[:, i], color=OURS, label="lag, predicted")
-            ax.plot(w, noise[:, i], color=ORANGE, ls="--", label="noise, predicted")
-            both = np.hypot(predicted, noise)[:, i]
-            ax.plot(w, both, color=BOUND, ls=":", label="both")
-            points = [pair[i] for pair in measured.values()]
-            middle = np.array([one.value for one in points])
-            ends = np.array([[one.value - one.low, one.high - one.value] for one in points]).T
-            ax.errorbar(
-                list(measured), middle, yerr=ends, fmt="o", color=PUBLISHED, ms=4, capsize=3,
-                label="mean error of the runs",
-            )  # fmt: skip
-            ax.set(xscale="log", yscale="log", xlabel="velocity step $w$ (m/s)")
-            ax.set_ylabel(("position error (m)", "speed error (m/s)")[i])
-            ax.set_ylim(0.004, None)
-        ax.legend(loc="lower left", fontsize=8.5)
-        return figure
+    for i, ax in enumerate(figure.subplots(1, 2)):
+        ax.plot(w, predicted[:, i], color=OURS, label="lag, predicted")
+        ax.plot(w, noise[:, i], color=ORANGE, ls="--", label="noise, predicted")
+        both = np.hypot(predicted, noise)[:, i]
+        ax.plot(w, both, color=BOUND, ls=":", label="both")
+        points = [pair[i] for pair in measured.values()]
+        middle = np.array([one.value for one in points])
+        ends = np.array([[one.value - one.low, one.high - one.value] for one in points]).T
+        ax.errorbar(
+            list(measured), middle, yerr=ends, fmt="o", color=PUBLISHED, ms=4, capsize=3,
+            label="mean error of the runs",
+        )  # fmt: skip
+        ax.set(xscale="log", yscale="log", xlabel="velocity step $w$ (m/s)")
+        ax.set_ylabel(("position error (m)", "speed error (m/s)")[i])
+        ax.set_ylim(0.004, None)
+    ax.legend(loc="lower left", fontsize=8.5)
 
 
-@checked
+@drawing(7.0, 3.2)
 def nis_and_nees(
+    figure: Figure,
     time: Array,
     averages: dict[str, tuple[Array, Array]],
     intervals: tuple[tuple[float, float], tuple[float, float]],
-) -> Figure:
+) -> None:
     """Draw the average NIS and NEES of several paths.
 
     time (K,): Time in s.
     averages (K,): For each path, averages over the runs of NIS and NEES.
     intervals: Intervals of both averages for a consistent filter.
     """
-    with styled(7.0, 3.2) as figure:
-        axes = figure.subplots(1, 2, sharey=True)
-        for i, (ax, name) in enumerate(zip(axes, ("NIS", "NEES"), strict=True)):
-            ax.axhspan(*intervals[i], color=BOUND, alpha=0.4, lw=0, label="consistent")
-            for (label, pair), (color, ls) in zip(averages.items(), VARIANTS, strict=False):
-                ax.plot(time, pair[i], color=color, ls=ls, lw=1.1, label=label)
-            ax.set(xlabel="time (s)", ylabel=f"average {name}", yscale="log")
-            plain_log_ticks(ax.yaxis)
-        axes[0].legend(loc="upper right")
-        return figure
+    axes = figure.subplots(1, 2, sharey=True)
+    for i, (ax, name) in enumerate(zip(axes, ("NIS", "NEES"), strict=True)):
+        ax.axhspan(*intervals[i], color=BOUND, alpha=0.4, lw=0, label="consistent")
+        for (label, pair), (color, ls) in zip(averages.items(), VARIANTS, strict=False):
+            ax.plot(time, pair[i], color=color, ls=ls, lw=1.1, label=label)
+        ax.set(xlabel="time (s)", ylabel=f"average {name}", yscale="log")
+        plain_log_ticks(ax.yaxis)
+    axes[0].legend(loc="upper right")

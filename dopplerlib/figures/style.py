@@ -1,12 +1,19 @@
 """Parts of all figures: the style file, the colors by meaning, and a fresh figure."""
 
-from contextlib import contextmanager
+import inspect
+from collections.abc import Callable
+from functools import wraps
 from importlib.resources import as_file, files
+from typing import Any, Concatenate, ParamSpec
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from .._hints import checked
+
+_P = ParamSpec("_P")
 STYLE = files(__package__) / "style.mplstyle"
 
 # One meaning, one color, all through the book.
@@ -27,17 +34,30 @@ LABEL = {"textcoords": "offset points", "ha": "center", "va": "center"}
 HALO = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
 
 
-@contextmanager
-def styled(width=7.0, height=4.0):
-    """Give a new figure in the style of the book, of this size in inches.
+def drawing(width: float = 7.0, height: float = 4.0):
+    """Make a function that draws on a figure one that returns a new figure of this size in inches.
 
-    The figure is not registered with pyplot: the function that made it returns it, and nothing
-    else holds it.
+    The function gets the figure, in the style of the book, as its first argument; the others are
+    checked by their hints. The figure is not registered with pyplot: the caller alone holds it.
     """
-    with as_file(STYLE) as path, plt.style.context(path):
-        figure = plt.figure(figsize=(width, height))
-        plt.close(figure)
-        yield figure
+
+    def decorate(draw: Callable[Concatenate[Figure, _P], None]) -> Callable[_P, Figure]:
+        def new(*args, **kwargs):
+            with as_file(STYLE) as path, plt.style.context(path):
+                figure = plt.figure(figsize=(width, height))
+                plt.close(figure)
+                draw(figure, *args, **kwargs)
+            return figure
+
+        made: Any = wraps(draw)(new)
+        signature = inspect.signature(draw)
+        _, *others = signature.parameters.values()
+        made.__signature__ = signature.replace(parameters=others, return_annotation=Figure)
+        hints = {name: hint for name, hint in draw.__annotations__.items() if name != "figure"}
+        made.__annotations__ = hints | {"return": Figure}
+        return checked(made)
+
+    return decorate
 
 
 def plain_log_ticks(axis):

@@ -1,9 +1,12 @@
 """What figures share: a view of space, labels that do not touch, colors of sensors."""
 
+import inspect
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 from numpy.testing import assert_allclose
 
 from dopplerlib.figures import style
@@ -31,3 +34,18 @@ def test_labels_that_are_far_apart_stay():
 @pytest.mark.parametrize("n", [1, 2, 5, 6])
 def test_sensors_have_colors_of_their_own(n):
     assert len(set(style.sensor_colors(n))) == n
+
+
+def test_a_drawing_gets_a_figure_and_returns_it():
+    got = []
+
+    @style.drawing(3.0, 2.0)
+    def draw(figure: Figure, number: float, *, label: str = "") -> None:
+        """Draw nothing."""
+        got.append((figure, number, label))
+
+    figure = draw(1, label="one")
+    assert got == [(figure, 1.0, "one")] and figure.get_size_inches().tolist() == [3.0, 2.0]
+    assert list(inspect.signature(draw).parameters) == ["number", "label"]
+    with pytest.raises(ValueError, match=r"^number must be an array of real numbers, got 'x'"):
+        draw("x")
