@@ -64,7 +64,7 @@ class Scorecard:
             total = ", ".join(f"{count} {verdict}" for verdict, count in _counts(judgments).items())
             told = f" ({group})" if group else ""
             lines.append(f"{len(judgments)} claims{told}: {total}")
-        return "\n".join(lines) or "0 claims"
+        return "\n".join([*lines, *self._turned()]) or "0 claims"
 
     def _repr_markdown_(self):
         parts = []
@@ -73,7 +73,18 @@ class Scorecard:
                 on = f"On {group}; these verdicts do not count above:"
                 parts.append(_COUNTED_APART.get(group, on))
             parts.append(table(("claim", "published", "ours"), map(_row, judgments)))
-        return "\n\n".join(parts)
+        return "\n\n".join([*parts, *self._turned()])
+
+    def _turned(self):
+        """Return a line on the verdicts that would change beyond the ranges of our choices."""
+        tried = [one for one in self.judgments if any(point.beyond for point in one.points)]
+        if not tried:
+            return []
+        turned = ", ".join(one.claim.id for one in tried if one.turned)
+        return [
+            f"Beyond the declared ranges {len(tried)} verdicts were tried; these would change: "
+            f"{turned or 'none'}"
+        ]
 
     def _groups(self):
         """Return the judgments by what they count as; the findings of the document come first."""

@@ -77,12 +77,16 @@ def test_verdicts_on_a_surrogate_stand_in_a_table_of_their_own_and_do_not_count(
 
 def test_a_limit_of_ours_tells_its_range_and_where_the_verdict_turns():
     claim = replace(CLAIMS["limit"], relation=">", published=None, limit="much", unit="")
-    row = Scorecard((judge(claim, 11.0, [MUCH]),))._repr_markdown_().splitlines()[-1]
+    card = Scorecard((judge(claim, 11.0, [MUCH]),))
+    row, _, turned = card._repr_markdown_().splitlines()[-3:]
     assert "| > 2 to 10 | 11<br>" in row
+    assert turned.endswith("1 verdicts were tried; these would change: limit")
+    assert repr(card).splitlines()[-1] == turned
     assert "turns at a limit of 11" in row
     assert "beyond its range, much 15: contradicted" in row
     claim = replace(CLAIMS["limit"], form="size", relation=None, published=3.0, limit="much")
-    row = Scorecard((judge(claim, 12.0, [MUCH]),))._repr_markdown_().splitlines()[-1]
+    row, _, turned = Scorecard((judge(claim, 12.0, [MUCH]),))._repr_markdown_().splitlines()[-3:]
+    assert turned.endswith("these would change: none")
     assert "| 3 within a factor of 2 to 10 m | 12 m<br>" in row
     assert "much: contradicted at 2; reproduced at 10" in row
 
