@@ -11,9 +11,9 @@ import numpy as np
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.replication.choices import Choice
-from dopplerlib.replication.evidence import Draws, Readings, Sweep
+from dopplerlib.replication.evidence import Draws, Readings, Sweep, combinations
 from dopplerlib.replication.judgments import read_judgments
-from dopplerlib.replication.verdicts import judge
+from dopplerlib.replication.verdicts import _together, judge
 
 ROOT = Path(__file__).resolve().parents[2]
 FAR = 1e12  # no quantity of any document comes near, in any unit
@@ -44,25 +44,35 @@ def check_tests(claims):
     assert [id for id, (path, _, name) in named.items() if name not in functions(path)] == []
 
 
-def check_verdicts(document, judgments):
-    """The verdicts on record, and the numbers that the book shows, are those of this evidence."""
-    found = {one.claim.id: one.verdict for one in judgments}
-    assert found == {claim.id: claim.verdict for claim in document.claims}
-    shown = {one.claim.id: one for one in read_judgments(document.name)}
-    assert list(shown) == list(found)
-    for one in judgments:
-        there = shown[one.claim.id]
-        assert (there.verdict, len(there.points)) == (one.verdict, len(one.points)), one.claim.id
-        for ours, theirs in zip(one.points, there.points, strict=True):
-            same = (ours.at, ours.verdict, ours.beyond) == (
-                theirs.at,
-                theirs.verdict,
-                theirs.beyond,
-            )
-            assert same, (one.claim.id, ours.at)
-            for name in ("ours", "published", "percentile"):
-                values = [_values(getattr(point, name)) for point in (ours, theirs)]
-                np.testing.assert_allclose(*values, rtol=1e-6, atol=1e-12, err_msg=one.claim.id)
+def check_record(document):
+    """The judgments that the book shows are complete, and their verdicts those of the claims."""
+    shown = read_judgments(document.name)
+    assert {one.claim.id: one.verdict for one in shown} == {
+        claim.id: claim.verdict for claim in document.claims
+    }
+    for one in shown:
+        assert one.verdict == _together([p.verdict for p in one.points if not p.beyond])
+        axes = document.choice(*one.claim.choices)
+        wanted = list(combinations(axes)) if axes else [()]
+        places = [tuple(point.at[name] for name in one.claim.choices) for point in one.points]
+        assert list(dict.fromkeys(places)) == wanted, one.claim.id
+
+
+def check_numbers(document, evidence):
+    """The judgments that the book shows are those of this evidence, as far as it goes."""
+    for there in read_judgments(document.name):
+        claim, stored = there.claim, {tuple(point.at.items()): point for point in there.points}
+        for at, piece in _at(evidence[claim.id]):
+            place = dict(zip(claim.choices, at, strict=True))
+            for ours in judge(replace(claim, choices=()), piece, document.choices).points:
+                theirs = stored.get(tuple((place | ours.at).items()))
+                if theirs is None:  # beyond the range of the limit and of another choice at once
+                    assert ours.beyond
+                    continue
+                assert ours.verdict == theirs.verdict, (claim.id, place)
+                for name in ("ours", "published", "percentile"):
+                    values = [_values(getattr(point, name)) for point in (ours, theirs)]
+                    np.testing.assert_allclose(*values, rtol=1e-6, atol=1e-12, err_msg=claim.id)
 
 
 def check_flips(document, evidence):
@@ -92,6 +102,11 @@ def _verdict(document, claim, evidence, published):
         bare = replace(bare, limit="factor")
     factor = Choice("factor", "ours", "factor", (FACTOR,), "of this test", date(2026, 11, 29))
     return judge(bare, evidence, [factor]).verdict
+
+
+def _at(evidence):
+    """Return the pieces of evidence, each after the values of the choices that it is for."""
+    return evidence.points.items() if isinstance(evidence, Sweep) else [((), evidence)]
 
 
 def _pieces(evidence):
