@@ -313,7 +313,7 @@ def function(name, value):
 
 
 def estimates(names, *arrays, what="estimates"):
-    """Raise unless the results that come of the arguments `names` are finite."""
+    """Return the results that come of the arguments `names`, or raise unless they are finite."""
     for array in arrays:
         if not np.isfinite(array).all():
             place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
@@ -321,6 +321,7 @@ def estimates(names, *arrays, what="estimates"):
                 f"{names} must keep the {what} within the range of floating-point numbers, "
                 f"got {array[place]} at index {place}"
             )
+    return arrays if len(arrays) > 1 else arrays[0]
 
 
 def instance(name, value, kind):

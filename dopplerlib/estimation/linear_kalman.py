@@ -51,8 +51,7 @@ def kf_predict(
     Q = _checks.covariance("Q", Q, n, definite=False)
     _checks.check_leading(x=(x, 1), P=(P, 2), F=(F, 2), Q=(Q, 2))
     x, P = gaussian.predict(x, P, F, Q)
-    _checks.estimates("x, P, F, Q", x, P)
-    return x, P
+    return _checks.estimates("x, P, F, Q", x, P)
 
 
 @checked

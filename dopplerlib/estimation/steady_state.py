@@ -129,5 +129,4 @@ def steady_state_lag(F: ArrayLike, H: ArrayLike, K: ArrayLike, push: ArrayLike) 
             "K must give a stable filter, got (I - K H) F with eigenvalues outside the unit circle"
         )
     lag = np.linalg.solve(np.eye(n) - A @ F, A @ push[..., None])[..., 0]
-    _checks.estimates("F, H, K, push", lag)
-    return lag
+    return _checks.estimates("F, H, K, push", lag)

@@ -38,8 +38,7 @@ def doppler_shift(x: ArrayLike, array: RadarArray) -> FloatArray:
     160.0
     """
     shift = kernel.doppler_shift(*_arguments(x, array))
-    _checks.estimates("x, array", shift, what="shifts")
-    return shift
+    return _checks.estimates("x, array", shift, what="shifts")
 
 
 @checked
@@ -72,8 +71,7 @@ def doppler_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     with np.errstate(all="ignore"):
         _, *gradient = kernel.doppler_shift_and_gradient(*arguments)
     gradient = np.stack(gradient, axis=-1)
-    _checks.estimates("x, array", gradient, what="derivatives")
-    return gradient
+    return _checks.estimates("x, array", gradient, what="derivatives")
 
 
 def check_clear_of_sensors(name: str, x: FloatArray, array: RadarArray) -> None:

@@ -77,8 +77,7 @@ def fisher_information(
         else:
             H = doppler_jacobian(x, array) * np.sqrt(np.sum(weight**2, axis=0))[:, None]
             information = H.swapaxes(-1, -2) @ H
-    _checks.estimates("x, array, sigma_f, T", information, what="information")
-    return information
+    return _checks.estimates("x, array, sigma_f, T", information, what="information")
 
 
 def free_components(free: ArrayLike | None, n: int) -> BoolArray:

@@ -71,8 +71,7 @@ def range_rate_jacobian(x: ArrayLike, sensors: ArrayLike) -> FloatArray:
     with np.errstate(all="ignore"):
         H[..., 1, :2] = (v - rate[..., None] * u) / d[..., None]
     H[..., 1, 2:] = u
-    _checks.estimates("x, sensors", H, what="derivatives")
-    return H
+    return _checks.estimates("x, sensors", H, what="derivatives")
 
 
 def _geometry(x, sensors):

@@ -212,8 +212,7 @@ def mfsk_solve(
         found = np.linalg.solve(A, np.stack([frequencies, turns])).T
     except np.linalg.LinAlgError:
         raise ValueError(f"shift must leave two equations for r and v, got {shift}") from None
-    _checks.estimates("radar, shift", found, what="targets")
-    return found
+    return _checks.estimates("radar, shift", found, what="targets")
 
 
 def _pair(radar, a, b):

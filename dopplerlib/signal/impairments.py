@@ -38,8 +38,7 @@ def add_dc(x: ArrayLike, offset: ArrayLike) -> ComplexArray:
     _checks.check_broadcast("offset", offset.shape, "x", x.shape)
     with np.errstate(all="ignore"):
         x = x + offset
-    _checks.estimates("x, offset", x, what="samples")
-    return x
+    return _checks.estimates("x, offset", x, what="samples")
 
 
 @checked
@@ -74,8 +73,7 @@ def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
         return x
     if valid is None:
         x = about_mean(x)
-        _checks.estimates("x", x, what="mean")
-        return x
+        return _checks.estimates("x", x, what="mean")
     first = np.take_along_axis(x, valid.argmax(axis=-1, keepdims=True), axis=-1)
     x = np.where(valid, x - first, 0.0)
     mean = x.sum(axis=-1, keepdims=True) / np.maximum(valid.sum(axis=-1, keepdims=True), 1)
@@ -112,8 +110,7 @@ def add_iq_imbalance(x: ArrayLike, gain_db: float, phase_deg: Real) -> ComplexAr
     phi = np.radians(phase_deg)
     with np.errstate(all="ignore"):
         x = x.real + 1j * g * (x.imag * np.cos(phi) + x.real * np.sin(phi))
-    _checks.estimates("x, gain_db", x, what="samples")
-    return x
+    return _checks.estimates("x, gain_db", x, what="samples")
 
 
 def correct_iq_imbalance(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:

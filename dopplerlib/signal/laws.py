@@ -45,8 +45,7 @@ def crlb_frequency_std(snr: ArrayLike, n: ArrayLike, fs: AboveZero) -> FloatArra
         raise ValueError(f"n must be at least 2, got {n.min():g}")
     _checks.check_leading(snr=(snr, 0), n=(n, 0))
     bound = fs * np.sqrt(_VARIANCE / snr / n / (n**2 - 1))
-    _checks.estimates("snr, n, fs", bound, what="bound")
-    return bound
+    return _checks.estimates("snr, n, fs", bound, what="bound")
 
 
 @checked
@@ -126,8 +125,7 @@ def window_for_std(std: ArrayLike, cn0: ArrayLike) -> FloatArray:
     std, cn0 = _checks.positive("std", std), _checks.positive("cn0", cn0)
     _checks.check_leading(std=(std, 0), cn0=(cn0, 0))
     length = np.cbrt(_VARIANCE / std / std / cn0)
-    _checks.estimates("std, cn0", length, what="length")
-    return length
+    return _checks.estimates("std, cn0", length, what="length")
 
 
 @checked
@@ -159,8 +157,7 @@ def integrated_snr_for_std(std: ArrayLike, T: ArrayLike) -> FloatArray:
     std, T = _checks.positive("std", std), _checks.positive("T", T)
     _checks.check_leading(std=(std, 0), T=(T, 0))
     snr = _VARIANCE / (std * T) ** 2
-    _checks.estimates("std, T", snr, what="ratio")
-    return snr
+    return _checks.estimates("std, T", snr, what="ratio")
 
 
 @checked
@@ -293,8 +290,7 @@ def optimal_window_end(cn0: ArrayLike, chirp: ArrayLike) -> FloatArray:
     cn0, chirp = _checks.positive("cn0", cn0), _nonzero("chirp", chirp)
     _checks.check_leading(cn0=(cn0, 0), chirp=(chirp, 0))
     length = (6 * _VARIANCE / cn0 / chirp / chirp) ** (1 / 5)
-    _checks.estimates("cn0, chirp", length, what="length")
-    return length
+    return _checks.estimates("cn0, chirp", length, what="length")
 
 
 @checked
@@ -326,8 +322,7 @@ def optimal_window_center(cn0: ArrayLike, curvature: ArrayLike) -> FloatArray:
     cn0, curvature = _checks.positive("cn0", cn0), _nonzero("curvature", curvature)
     _checks.check_leading(cn0=(cn0, 0), curvature=(curvature, 0))
     length = (1200 * _VARIANCE / cn0 / curvature / curvature) ** (1 / 7)
-    _checks.estimates("cn0, curvature", length, what="length")
-    return length
+    return _checks.estimates("cn0, curvature", length, what="length")
 
 
 def _nonzero(name, value):

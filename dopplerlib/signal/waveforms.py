@@ -325,8 +325,7 @@ def chirp_intersections(
     for relation, there in zip(relations[2:], tones[2:], strict=True):
         off = np.abs((targets @ relation)[:, None] - there)
         misfit = np.maximum(misfit, off.min(axis=1))
-    _checks.estimates("relations, frequencies", targets, misfit, what="targets")
-    return targets, misfit
+    return _checks.estimates("relations, frequencies", targets, misfit, what="targets")
 
 
 @checked

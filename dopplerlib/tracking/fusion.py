@@ -69,8 +69,7 @@ def fuse_state_vectors(
     root = covariances.square_root(joint)
     x = gaussian.moved(x1, W, x2 - x1)
     P = covariances.squared(np.concatenate([np.eye(n) - W, W], axis=-1) @ root)
-    _checks.estimates("x1, P1, x2, P2, P12", x, P)
-    return x, P
+    return _checks.estimates("x1, P1, x2, P2, P12", x, P)
 
 
 def _independent(x1, P1, x2, P2):
@@ -79,8 +78,7 @@ def _independent(x1, P1, x2, P2):
     A = np.eye(x1.shape[-1]) - W
     parts = np.broadcast_arrays(A @ covariances.square_root(P1), W @ covariances.square_root(P2))
     x, P = gaussian.moved(x1, W, x2 - x1), covariances.squared(np.concatenate(parts, axis=-1))
-    _checks.estimates("the two estimates", x, P)
-    return x, P
+    return _checks.estimates("the two estimates", x, P)
 
 
 @checked
@@ -134,8 +132,7 @@ def cross_covariance_step(
     _checks.check_leading(**leading)
     keep = [np.eye(n) - K @ H for K, H in keep]
     P12 = keep[0] @ (F @ P12 @ F.mT + Q) @ keep[1].mT
-    _checks.estimates("P12, F, Q, K1, H1, K2, H2", P12)
-    return P12
+    return _checks.estimates("P12, F, Q, K1, H1, K2, H2", P12)
 
 
 @checked
@@ -195,8 +192,7 @@ def covariance_intersection(
         gaussian.moved(x1, (1 - w) * A, x2 - x1),
         covariances.squared(np.concatenate(parts, axis=-1)),
     )
-    _checks.estimates("x1, P1, x2, P2", x, P)
-    return x, P
+    return _checks.estimates("x1, P1, x2, P2", x, P)
 
 
 @checked
