@@ -4,6 +4,7 @@ from . import crossing as crossing
 from . import evidence as evidence
 from . import lag_prediction as lag_prediction
 from . import linear_filter as linear_filter
+from . import model_comparison as model_comparison
 from . import motion_models as motion_models
 from . import polar_filters as polar_filters
 from . import processing as processing
@@ -34,6 +35,11 @@ from .linear_filter import gain_sequence as gain_sequence
 from .linear_filter import measure_vehicle as measure_vehicle
 from .linear_filter import track_vehicle as track_vehicle
 from .linear_filter import tracking_errors as tracking_errors
+from .model_comparison import AGILE as AGILE
+from .model_comparison import JERKS as JERKS
+from .model_comparison import STAYS as STAYS
+from .model_comparison import STEPS as STEPS
+from .model_comparison import model_errors as model_errors
 from .motion_models import rms_of_runs as rms_of_runs
 from .motion_models import smooth_vehicle as smooth_vehicle
 from .motion_models import track_accelerating as track_accelerating
@@ -79,14 +85,18 @@ from .truth import hard_turn as hard_turn
 from .truth import vehicle_paths as vehicle_paths
 
 __all__ = [
+    "AGILE",
     "CAR",
     "CLAIMS",
     "CLUTTER",
+    "JERKS",
     "KMH",
     "MANAGER",
     "PEDESTRIAN",
     "RULES",
     "SLOPES",
+    "STAYS",
+    "STEPS",
     "TARGET",
     "AutomotiveSettings",
     "Crossing",
@@ -117,6 +127,7 @@ __all__ = [
     "longest_gap",
     "measure_polar",
     "measure_vehicle",
+    "model_errors",
     "noisy_echoes",
     "outcome_summary",
     "polar_noise",

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from ... import _checks
-from ..._hints import Positive, checked, exactly
+from ..._hints import Positive, Probability, checked, exactly
 from ..._typing import BoolArray, FloatArray
 from ...estimation.imm import imm
 from ...estimation.imm_records import ImmModel
@@ -88,7 +88,10 @@ def track_accelerating(
 
 @checked
 def track_two_models(
-    z: Measured, w: tuple[Positive, Positive], s: AutomotiveSettings | None = None
+    z: Measured,
+    w: tuple[Positive, Positive],
+    s: AutomotiveSettings | None = None,
+    stay: Probability = STAY,
 ) -> tuple[FloatArray, FloatArray]:
     """Return estimates of two interacting filters of constant velocity, a calm and an agile one.
 
@@ -100,6 +103,8 @@ def track_two_models(
         Velocity step of each model in m/s.
     s : AutomotiveSettings, optional
         Those of the data file if None.
+    stay : float
+        Probability that a model stays for one step.
 
     Returns
     -------
@@ -116,7 +121,7 @@ def track_two_models(
     s = automotive_settings() if s is None else s
     F, H = ncv_transition(s.T), np.eye(4)
     models = [ImmModel(F, s.with_(w=one).E_x, H, s.E_z) for one in w]
-    switch = np.array([[STAY, 1 - STAY], [1 - STAY, STAY]])
+    switch = np.array([[stay, 1 - stay], [1 - stay, stay]])
     track = imm(z[:, 1:], models, switch, x0=z[:, 0], P0=s.E_z)
     half = np.full((len(z), 1), 0.5)
     return (

@@ -1,6 +1,6 @@
 """Range, azimuth and range rate as the radar of Section III measures them, and two filters."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from .settings import AutomotiveSettings, automotive_settings
 from .truth import Truth
 
 SIDEWAYS = 3.0  # m/s: deviation of the velocity across the line of sight before it is known; ours
+Covariance = Literal["as along", "document", "open"]
 Record = Annotated[FloatArray, exactly(None, None, 3, check=_checks.bounded)]
 
 
@@ -164,7 +165,9 @@ def track_polar(z: Record, s: AutomotiveSettings | None = None) -> Track:
 
 
 @checked
-def track_polar_naive(z: Record, s: AutomotiveSettings | None = None) -> Track:
+def track_polar_naive(
+    z: Record, s: AutomotiveSettings | None = None, covariance: Covariance = "as along"
+) -> Track:
     """Track with the range rate taken for the velocity: the filter of Eqs 4 to 6 fed by a radar.
 
     Parameters
@@ -173,6 +176,10 @@ def track_polar_naive(z: Record, s: AutomotiveSettings | None = None) -> Track:
         Polar measurements, none missing.
     s : AutomotiveSettings, optional
         Those of the data file if None.
+    covariance : {"as along", "document", "open"}
+        E_z: the polar noise at the place of the target, turned into x and y, with a velocity that
+        is as good across the line of sight as along it; the diagonal matrix of the document, that
+        of `s`; or the first one with a velocity that is open across the line of sight.
 
     Returns
     -------
@@ -186,7 +193,7 @@ def track_polar_naive(z: Record, s: AutomotiveSettings | None = None) -> Track:
     Notes
     -----
     H = I asks for v_x and v_y. A radar has the range rate only; here it is turned into a vector
-    along the line of sight. E_z is the polar noise at the place of the target, turned into x and y.
+    along the line of sight.
 
     Examples
     --------
@@ -206,8 +213,10 @@ def track_polar_naive(z: Record, s: AutomotiveSettings | None = None) -> Track:
     def model(x, both):
         cartesian, seen = both[..., :4], both[..., 4:]
         _, E_z = start_polar(seen)
-        # Whoever takes the vector for the velocity takes it to be as good across as along.
-        E_z[..., 1::2, 1::2] = radar.sigma_rate**2 * np.eye(2)
+        if covariance == "as along":
+            E_z[..., 1::2, 1::2] = radar.sigma_rate**2 * np.eye(2)
+        elif covariance == "document":
+            E_z = s.E_z
         return cartesian - x, np.eye(4), E_z
 
     return _track(np.concatenate([full, z], axis=-1), s, start_polar(z[:, 0]), model)

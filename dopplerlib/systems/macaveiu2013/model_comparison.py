@@ -1,0 +1,82 @@
+"""Filters and smoothers on the same records, each over the range of its free constant."""
+
+from functools import partial
+
+import numpy as np
+
+from ..._hints import Runs, checked
+from ..._typing import FloatArray
+from .linear_filter import filter_vehicle, measure_vehicle
+from .motion_models import rms_of_runs, smooth_vehicle, track_accelerating, track_two_models
+from .published import KMH
+from .settings import automotive_settings
+from .truth import hard_turn, vehicle_paths
+
+# Each competitor gets its constant by a rule or over a range, and the ranges do not depend on what
+# comes out: velocity steps from half the acceleration of Fig 10 to that of a car that brakes, times
+# T; a jerk that changes the acceleration in 19 s by a tenth of that of Fig 10, up to that of the
+# hard turn; an agile model by the rule a_max T, or half of it; a change of model every 1, 4, 38 s.
+STEPS = (0.003, 0.01, 0.03, 0.1)  # m/s
+JERKS = (1e-5, 1e-4, 1e-3, 1e-2, 0.1)  # m^2/s^5
+AGILE = (0.028, 0.055)  # m/s
+STAYS = (0.962, 0.99, 0.999)
+_TURN = 10 * KMH * (np.pi / 2) / 3  # m/s^2: acceleration of the hard turn
+
+
+@checked
+def model_errors(runs: Runs, *, rng: np.random.Generator) -> dict[str, dict[str, FloatArray]]:
+    """Return velocity errors of filters of several models, and of the smoother.
+
+    Parameters
+    ----------
+    runs : int
+        Number of independent records of each path.
+    rng : numpy.random.Generator
+        Source of the measurement noise; all competitors see the same records.
+
+    Returns
+    -------
+    dict of str to dict of str to ndarray, shape (runs,)
+        Root mean square error in m/s by the case ("Fig 7", "Fig 10", "Fig 11", "in the turn",
+        "before it") and the competitor.
+
+    Examples
+    --------
+    >>> found = model_errors(1, rng=np.random.default_rng(1))
+    >>> len(found["Fig 10"]), len(found)
+    (20, 5)
+    """
+    s, (hard, turning) = automotive_settings(), hard_turn()
+    settled = np.arange(s.samples) >= s.skip
+    paths = {f"Fig {i}": path for i, path in vehicle_paths().items() if i in (7, 10, 11)}
+    found: dict[str, dict[str, FloatArray]] = {}
+    for (name, path), child in zip((paths | {"hard": hard}).items(), rng.spawn(4), strict=True):
+        z = measure_vehicle(path.truth, runs, rng=child)
+        hard_cases = {"in the turn": turning, "before it": settled & (s.time < 8)}
+        for competitor, estimate in _competitors(s).items():
+            x = estimate(z)
+            for case, where in ({name: settled} if path.figure else hard_cases).items():
+                error = rms_of_runs(x, path.truth, where, "velocity")
+                found.setdefault(case, {})[competitor] = error
+    return found
+
+
+def _competitors(s):
+    """Return a function from measurements to estimates for each competitor."""
+    made = {f"filter, w = {w:g}": partial(filter_vehicle, s=s.with_(w=w)) for w in STEPS}
+    for q in JERKS:
+        made[f"acceleration, q = {q:g}"] = partial(track_accelerating, q=q, a_max=_TURN)
+    for w in AGILE:
+        for stay in STAYS:
+            made[f"IMM, w = {w:g}, stay = {stay:g}"] = partial(_mixed, w=w, stay=stay)
+    for w in STEPS:
+        made[f"smoother, w = {w:g}"] = partial(_smoothed, s=s.with_(w=w))
+    return made | {"measurement": lambda z: z}
+
+
+def _mixed(z, w, stay):
+    return track_two_models(z, (automotive_settings().w, w), stay=stay)[0]
+
+
+def _smoothed(z, s):
+    return smooth_vehicle(z, s)[1]
