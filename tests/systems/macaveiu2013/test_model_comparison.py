@@ -7,6 +7,7 @@ from dopplerlib.systems import macaveiu2013 as paper
 
 S = paper.automotive_settings()
 PATHS = paper.vehicle_paths()
+ENDS = (0.003, 0.1)  # m/s: of the range of the velocity step
 STRAIGHT = {"filter, w = 0.003", "filter, w = 0.01"}
 
 
@@ -86,7 +87,7 @@ def test_the_smoother_is_better_than_its_filter_on_every_path_but_not_before_a_t
 def polar():
     """Return rms of the position and mean NIS by step, figure and filter: means of 12 records."""
     found, settled = {}, np.arange(S.samples) >= S.skip
-    for w in (0.003, 0.01, 0.1):
+    for w in ENDS:
         for figure, path in PATHS.items():
             z = paper.measure_polar(path.truth, 12, rng=np.random.default_rng(60 + figure))
             tracks = {"EKF": paper.track_polar(z, S.with_(w=w))}
@@ -100,7 +101,7 @@ def polar():
 
 def test_the_covariance_of_the_document_hides_the_velocity_that_is_not_measured(polar):
     """A factor of 2.3 to 5 for every step; a mean NIS below 4 where the filter follows the turn."""
-    for w in (0.003, 0.01, 0.1):
+    for w in ENDS:
         for figure in (8, 9, 11):
             ratio = polar[w, figure, "document"][0] / polar[w, figure, "EKF"][0]
             assert 2 < ratio < 6
@@ -110,7 +111,7 @@ def test_the_covariance_of_the_document_hides_the_velocity_that_is_not_measured(
 
 
 def test_a_velocity_as_good_across_as_along_is_an_error_that_shows(polar):
-    for w in (0.003, 0.01, 0.1):
+    for w in ENDS:
         for figure in (8, 9, 11):
             assert polar[w, figure, "as along"][0] > 15 * polar[w, figure, "EKF"][0]
         for figure in (8, 9, 10, 11):
@@ -120,7 +121,7 @@ def test_a_velocity_as_good_across_as_along_is_an_error_that_shows(polar):
 
 
 def test_a_velocity_that_is_open_across_is_nearly_the_extended_filter(polar):
-    for w in (0.003, 0.01, 0.1):
+    for w in ENDS:
         for figure in PATHS:
             ratio = polar[w, figure, "open"][0] / polar[w, figure, "EKF"][0]
             assert 0.75 < ratio < 1.35
