@@ -21,10 +21,10 @@ def sketches(figure: Figure) -> None:
     for n in range(10):
         ends = [n / 10, (n + 1) / 10]
         fsk.plot(ends, [0.35 + 0.3 * (n % 2)] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
-    slopes.plot([0, 0.25, 0.5, 0.75, 1], [0, 1, 0, 0.6, 0], color=OURS)
+    slopes.plot([0, 0.25, 0.5, 0.75, 1], [0, 1, 0, 0.6, 0.3], color=OURS)
     for n in range(20):
         ends = [n / 20, (n + 1) / 20]
-        height = (n // 2) / 11 + 0.12 * (n % 2)
+        height = (n // 2 - 0.5 * (n % 2)) / 11  # B half a step below A
         mfsk.plot(ends, [height] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
     for n in range(8):
         rapid.plot([n / 8, (n + 1) / 8], [0, 1], color=OURS)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib.figures import macaveiu as draw
+from dopplerlib.systems.macaveiu2013 import SLOPES
 from tests.drawn import check_figures
 
 TIME = np.arange(6.0)
@@ -15,6 +16,11 @@ def test_sketches_have_a_panel_for_each_waveform():
         "pulses", "chirps (LFM)", "two tones (FSK)", "several slopes", "MFSK", "rapid chirps",
     ]  # fmt: skip
     assert all(ax.lines for ax in axes)
+    heights = np.array([line.get_ydata()[0] for line in axes[4].lines]).reshape(-1, 2)
+    steps = np.diff(heights[:, 0])
+    assert heights[:, 1] - heights[:, 0] == pytest.approx(-steps[0] / 2)  # B half a step below A
+    assert steps == pytest.approx(steps[0])
+    assert np.diff(axes[3].lines[0].get_ydata()) == pytest.approx(SLOPES)
 
 
 def test_pulses_show_the_amplitude_and_every_spectrum():
