@@ -49,11 +49,6 @@ def in_line_of_sight(expression: Expression) -> sp.Expr:
     expression : sympy.Expr
         Of `STATE`, `SENSOR` and `WAVELENGTH`.
 
-    Raises
-    ------
-    ValueError
-        If `expression` is no expression, or is not finite.
-
     Examples
     --------
     >>> in_line_of_sight((SENSOR[0] - STATE[0]) * STATE[3])
@@ -102,11 +97,6 @@ def as_written(expression: Expression) -> sp.Expr:
     expression : sympy.Expr
         Of `STATE`, `SENSOR` and `WAVELENGTH`.
 
-    Raises
-    ------
-    ValueError
-        If `expression` is no expression, or is not finite.
-
     Examples
     --------
     >>> as_written(doppler_shift())
@@ -124,11 +114,6 @@ def equations(gradient: bool = True) -> tuple:
     ----------
     gradient : bool
         Whether the derivatives are among them.
-
-    Raises
-    ------
-    ValueError
-        If `gradient` is not a boolean.
 
     Examples
     --------

@@ -40,11 +40,6 @@ def invariants(state: _State = STATE) -> sp.Matrix:
     state : iterable of six sympy.Expr
         In the order of `STATE`.
 
-    Raises
-    ------
-    ValueError
-        If `state` does not hold six finite expressions.
-
     Examples
     --------
     >>> from dopplerlib.derive.doppler import STATE

@@ -58,11 +58,6 @@ def rank(matrix: RationalMatrix) -> int:
     matrix : sympy.Matrix
         Its numbers are fractions: of decimals no rank is exact.
 
-    Raises
-    ------
-    ValueError
-        If `matrix` is no matrix, or an entry is no rational function.
-
     Examples
     --------
     >>> x = sp.Symbol("x")
@@ -94,11 +89,6 @@ def prove_twin_agrees(order: Annotated[int, up_to(3, least=0)]) -> sp.Expr:
     ----------
     order : int
         From 0 to 3, the first that is not zero.
-
-    Raises
-    ------
-    ValueError
-        If `order` is out of range.
 
     Examples
     --------

@@ -88,16 +88,11 @@ class FrequencyBenchmark:
         Parameters
         ----------
         snr_db : float
-            In dB.
+            In dB, one of the levels.
 
         Returns
         -------
         int
-
-        Raises
-        ------
-        ValueError
-            If it is none of the levels.
 
         Examples
         --------
@@ -125,11 +120,6 @@ class FrequencyBenchmark:
         ConfidenceInterval
             Where the measured fractions, and the ends of their intervals, fall to `fraction`
             for good, interpolated on a logarithmic scale; infinite if they never do.
-
-        Raises
-        ------
-        ValueError
-            If `name` is no estimator of the benchmark, or `fraction` is not between 0 and 1.
 
         Examples
         --------
@@ -178,11 +168,6 @@ def benchmark_windows(
     f : ndarray, shape (windows,)
         Frequencies in Hz.
 
-    Raises
-    ------
-    ValueError
-        If `snr_db` is none of the levels or `windows` is no positive whole number.
-
     Notes
     -----
     The seed is made from `SEED` and the number of the level, so that each level can be made
@@ -228,11 +213,6 @@ def benchmark_cell(
         Root-mean-square error over the bound.
     outliers : int
         Estimates that are off by more than a bin.
-
-    Raises
-    ------
-    ValueError
-        If `name` is no estimator of the benchmark, or the estimator refuses the samples.
 
     Notes
     -----
