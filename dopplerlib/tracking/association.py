@@ -109,6 +109,10 @@ def gnn_assign(cost: ArrayLike, gate: float) -> IntArray:
     The linear assignment problem, for which Kuhn (1955) gave the Hungarian algorithm; solved by
     `scipy.optimize.linear_sum_assignment`, with one column more for each track to stay alone.
 
+    NIS is not the whole of a likelihood: it lacks ln|S|, so that a coasting track, whose S is
+    large, outbids a track that is sure of its target. Where the covariances of tracks differ, add
+    ln|S| of each track to its costs, and the largest of them to the gate.
+
     Examples
     --------
     Each track for itself would take the first detection; together they do better:

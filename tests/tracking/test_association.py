@@ -94,3 +94,13 @@ def test_the_nearest_of_nothing_is_none():
 def test_bad_input_is_named(function, arguments, name):
     with pytest.raises(ValueError, match=rf"^{name} must "):
         function(*arguments)
+
+
+def test_with_nis_alone_a_coasting_track_outbids_one_that_is_sure_and_a_determinant_mends_that():
+    """One detection, 0.2 from a track with S = 0.02 and 0.3 from one that coasts with S = 4."""
+    S = np.array([0.02, 4.0])
+    nis = np.array([[0.2**2], [0.3**2]]) / S[:, None]
+    density = np.exp(-nis[:, 0] / 2) / np.sqrt(S)
+    assert density[0] > density[1]
+    assert gnn_assign(nis, 9.0).tolist() == [-1, 0]
+    assert gnn_assign(nis + np.log(S)[:, None], 9.0 + np.log(S).max()).tolist() == [0, -1]

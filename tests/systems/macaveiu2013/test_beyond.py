@@ -92,6 +92,18 @@ def test_the_polar_filter_follows_a_target_that_passes_behind_the_radar():
     assert len(track.scan) == 200
 
 
+def test_the_scheme_follows_a_target_straight_behind_whose_azimuth_has_either_sign():
+    """The noise makes it pi or -pi. No scan is lost: the scheme expects twice that noise."""
+    k = np.arange(100)
+    truth = np.stack([0.0 * k, 0 * k, -6 - 1.4 * S.T * k, 0 * k - 1.4], axis=-1)
+    z = paper.measure_polar(truth, 1, rng=np.random.default_rng(15))[0]
+    z[:, 1] = (z[:, 1] + np.pi) % (2 * np.pi) - np.pi
+    assert (z[:, 1] > 3).any() and (z[:, 1] < -3).any()
+    scans = [paper.VehicleScan(one[None], np.zeros(1, int)) for one in z]
+    (track,) = paper.track_objects(scans, rule="never")
+    assert len(track.scan) == 100 and (track.detection >= 0).all()
+
+
 def test_the_clutter_rule_deletes_the_crossing_target_and_no_one_that_recedes():
     """|x / r| < v_min / v: with v = 5 km/h and y = 20 m, |x| < 2.38 m, which takes 3.4 s."""
     hidden = {figure: paper.hidden_scans(path.truth) for figure, path in PATHS.items()}
