@@ -13,9 +13,11 @@ _HOME = by_name(
         "window_transform": "FilteredDoppler doppler_filter measurement_variance",
         "velocity_filter": "VelocityTrack filter_velocity",
         "window_simulation": "window_table",
-        "window_law": "best_window law_exponents law_rmse linear_cost plane_error",
-        "algorithms": "ALGORITHMS AlgorithmRuns run_algorithms",
+        "window_law": "best_lengths best_window law_exponents law_rmse linear_cost linear_error",
+        "algorithms": "ALGORITHMS AlgorithmRuns operations run_algorithms",
         "residual_noise": "residual_variance updated_residual",
+        "error_measures": "run_measures",
+        "fusion_sweep": "FusionSweep saved_sweep",
         "fusion_study": "FusionStudy cell_measures failure_limit saved_failures saved_study "
         "study_cell study_table",
         "fusion": "FusedTrack ablation calibration error_correlation fuse_all fusion_errors "

@@ -1,8 +1,10 @@
 # Made by python -m tools.stubs; do not edit.
 from . import algorithms as algorithms
+from . import error_measures as error_measures
 from . import evidence as evidence
 from . import fusion as fusion
 from . import fusion_study as fusion_study
+from . import fusion_sweep as fusion_sweep
 from . import published as published
 from . import residual_noise as residual_noise
 from . import velocity_filter as velocity_filter
@@ -13,7 +15,9 @@ from . import window_simulation as window_simulation
 from . import window_transform as window_transform
 from .algorithms import ALGORITHMS as ALGORITHMS
 from .algorithms import AlgorithmRuns as AlgorithmRuns
+from .algorithms import operations as operations
 from .algorithms import run_algorithms as run_algorithms
+from .error_measures import run_measures as run_measures
 from .fusion import FusedTrack as FusedTrack
 from .fusion import ablation as ablation
 from .fusion import calibration as calibration
@@ -30,6 +34,8 @@ from .fusion_study import saved_failures as saved_failures
 from .fusion_study import saved_study as saved_study
 from .fusion_study import study_cell as study_cell
 from .fusion_study import study_table as study_table
+from .fusion_sweep import FusionSweep as FusionSweep
+from .fusion_sweep import saved_sweep as saved_sweep
 from .published import Reported as Reported
 from .published import reported as reported
 from .residual_noise import residual_variance as residual_variance
@@ -40,11 +46,12 @@ from .velocity_paths import VelocityPath as VelocityPath
 from .velocity_paths import velocity_path as velocity_path
 from .window_choice import WindowTable as WindowTable
 from .window_choice import cumulative_error as cumulative_error
+from .window_law import best_lengths as best_lengths
 from .window_law import best_window as best_window
 from .window_law import law_exponents as law_exponents
 from .window_law import law_rmse as law_rmse
 from .window_law import linear_cost as linear_cost
-from .window_law import plane_error as plane_error
+from .window_law import linear_error as linear_error
 from .window_simulation import window_table as window_table
 from .window_transform import FilteredDoppler as FilteredDoppler
 from .window_transform import doppler_filter as doppler_filter
@@ -56,11 +63,13 @@ __all__ = [
     "FilteredDoppler",
     "FusedTrack",
     "FusionStudy",
+    "FusionSweep",
     "Reported",
     "VelocityPath",
     "VelocityTrack",
     "WindowTable",
     "ablation",
+    "best_lengths",
     "best_window",
     "calibration",
     "cell_measures",
@@ -75,15 +84,18 @@ __all__ = [
     "law_exponents",
     "law_rmse",
     "linear_cost",
+    "linear_error",
     "matched_model",
     "measurement_variance",
     "merged_doppler",
-    "plane_error",
+    "operations",
     "reported",
     "residual_variance",
     "run_algorithms",
+    "run_measures",
     "saved_failures",
     "saved_study",
+    "saved_sweep",
     "study_cell",
     "study_table",
     "updated_residual",

@@ -5,7 +5,7 @@ from numba import njit
 
 from ..._compile import cached_njit
 
-FIXED, OWN, FUSED = 0, 1, 2
+FIXED, OWN, FUSED, STATE = 0, 1, 2, 3
 
 
 @njit(nogil=True, error_model="numpy")
@@ -44,8 +44,8 @@ def filter_pair(
 ):  # fmt: skip
     """Write the states of all filters, and of their fusion, at all times.
 
-    `v`, `snr_db` (W, runs, sensors, K) are measurements with each of W windows, `R` (W,) their
-    variances, `delay` (W,) the ages that the filters take them to have. The results are `x`
+    `v`, `snr_db` (W, runs, sensors, K) are measurements with each of W windows, `R` (W, sensors)
+    their variances, `delay` (W,) the ages that the filters take them to have. The results are `x`
     (runs, sensors, K, 2), `P` (runs, sensors, K, 2, 2), `P12` (runs, K, 2, 2), `fused_x`,
     `fused_P`, the number of the window `choice` (runs, sensors, K), and `innovation` and `S`, whose
     first entries are NaN: the first measurement is the start.
@@ -61,7 +61,7 @@ def filter_pair(
         for s in range(sensors):
             choice[r, s, 0] = fixed
             x[r, s, 0, 0], x[r, s, 0, 1] = v[fixed, r, s, 0], 0.0
-            P[r, s, 0, 0, 0], P[r, s, 0, 1, 1] = R[fixed], a_std**2
+            P[r, s, 0, 0, 0], P[r, s, 0, 1, 1] = R[fixed, s], a_std**2
             P[r, s, 0, 0, 1], P[r, s, 0, 1, 0] = 0.0, 0.0
             innovation[r, s, 0], S[r, s, 0] = np.nan, np.nan
         # Both take the acceleration to be zero at first, and err by the same.
@@ -80,7 +80,7 @@ def filter_pair(
                 p11 += q11
                 h = -delay[w]
                 c0, c1 = p00 + h * p01, p01 + h * p11  # P H'
-                variance = c0 + h * c1 + R[w]
+                variance = c0 + h * c1 + R[w, s]
                 nu = v[w, r, s, k] - velocity - h * acceleration
                 k0, k1 = c0 / variance, c1 / variance
                 innovation[r, s, k], S[r, s, k] = nu, variance
@@ -92,10 +92,10 @@ def filter_pair(
                 # In the form of Joseph.
                 m0, m1 = a * p00 + b * p01, a * p01 + b * p11
                 n0, n1 = c * p00 + d * p01, c * p01 + d * p11
-                P[r, s, k, 0, 0] = m0 * a + m1 * b + k0 * k0 * R[w]
-                P[r, s, k, 0, 1] = m0 * c + m1 * d + k0 * k1 * R[w]
+                P[r, s, k, 0, 0] = m0 * a + m1 * b + k0 * k0 * R[w, s]
+                P[r, s, k, 0, 1] = m0 * c + m1 * d + k0 * k1 * R[w, s]
                 P[r, s, k, 1, 0] = P[r, s, k, 0, 1]
-                P[r, s, k, 1, 1] = n0 * c + n1 * d + k1 * k1 * R[w]
+                P[r, s, k, 1, 1] = n0 * c + n1 * d + k1 * k1 * R[w, s]
             if sensors == 1:
                 fused_x[r, k], fused_P[r, k] = x[r, 0, k], P[r, 0, k]
             else:
@@ -123,6 +123,9 @@ def filter_pair(
                     fused_x[r, k, i] = x[r, 0, k, i] + w0 * y0 + w1 * y1
                     for j in range(2):
                         fused_P[r, k, i, j] = B[i, j] - w0 * B[0, j] - w1 * B[1, j]
+            if feedback == STATE:
+                for s in range(sensors):
+                    x[r, s, k], P[r, s, k] = fused_x[r, k], fused_P[r, k]
             if k == count - 1:
                 continue
             for s in range(sensors):
@@ -132,7 +135,7 @@ def filter_pair(
                     choice[r, s, k + 1] = choose(
                         x[r, s, k, 1], seen, a_nodes, snr_nodes, log_table, log_windows
                     )
-                elif feedback == FUSED:
+                elif feedback == FUSED or feedback == STATE:
                     seen = 0.0
                     for other in range(sensors):
                         seen += snr_db[choice[r, other, k], r, other, k] / sensors

@@ -9,6 +9,7 @@ from ..._hints import Runs, checked
 from ..._records import record
 from ..._typing import BoolArray, FloatArray
 from ...signal.synthesis import iq_from_velocity
+from .error_measures import run_measures, titled
 from .published import reported
 from .velocity_filter import VelocityTrack, _decibels, filter_velocity
 from .velocity_paths import PathName, VelocityPath, velocity_path
@@ -103,10 +104,10 @@ class AlgorithmRuns:
         }
         return masks[phase][self.fixed.first :]
 
-    def rmse(self, algorithm: Number, phase: Phase = "all", sensor: Sensor = 1) -> FloatArray:
-        """Return the root mean square error of each run in m/s, shape (runs,); see `during`."""
-        error = (self.velocity(algorithm, sensor) - self.truth)[:, self.during(phase)]
-        return np.sqrt(np.mean(error**2, axis=-1))
+    @checked
+    def measures(self, algorithm: Number, sensor: Sensor = 1) -> dict[str, FloatArray]:
+        """Return the measures of every run, see `run_measures`."""
+        return run_measures(self.path, self.velocity(algorithm, sensor))
 
     def cee(self, algorithm: Number, sensor: Sensor = 1) -> FloatArray:
         """Return the document's running error, counted from the first scored sample.
@@ -116,29 +117,12 @@ class AlgorithmRuns:
         scored = self.during("all")
         return cumulative_error(self.truth[scored], self.velocity(algorithm, sensor)[:, scored])
 
-    def delay(self, algorithm: Number, sensor: Sensor = 1) -> FloatArray:
-        """Return the delay of each run in a steady maneuver, in s, shape (runs,)."""
-        steady = self.during("steady")
-        a = self.path.a[self.fixed.first :][steady]
-        error = (self.velocity(algorithm, sensor) - self.truth)[:, steady]
-        # A velocity that is late by d errs by -a d: least squares.
-        return -error @ a / (a @ a)
-
     def summary(self) -> dict[str, dict[str, FloatArray]]:
         """Return, by the name of the algorithm, errors and delay of each run by what they are.
 
         Delays are in halves of the fixed window.
         """
-        half = (reported().chosen.fixed_window - 1) / 2 * reported().stated.T
-        return {
-            name: {
-                "maneuver (m/s)": self.rmse(number, "maneuver"),
-                "constant velocity (m/s)": self.rmse(number, "constant"),
-                "whole record (m/s)": self.rmse(number),
-                "delay (half windows)": self.delay(number) / half,
-            }
-            for number, name in ALGORITHMS.items()
-        }
+        return {name: titled(self.measures(number)) for number, name in ALGORITHMS.items()}
 
 
 @checked
@@ -175,8 +159,8 @@ def run_algorithms(
     >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
     >>> table = WindowTable([0, 10], [0, 20], [8, 64], cee)
     >>> runs = run_algorithms("path 2", 15.0, 1, table, rng=np.random.default_rng(1))
-    >>> runs.rmse(1).shape, runs.cee(4).shape, runs.delay(5).shape, len(runs.summary())
-    ((1,), (1, 4760), (1,), 6)
+    >>> runs.measures(1)["whole"].shape, runs.cee(4).shape, len(runs.summary())
+    ((1,), (1, 4760), 6)
     """
     path, own, said = velocity_path(name), reported().chosen, reported().stated
     both = np.stack([path.v, path.v])
@@ -194,3 +178,33 @@ def run_algorithms(
         filter_velocity(doppler, snr_db, table=table, feedback="fused"),
         filter_velocity(doppler, snr_db, delayed=True),
     )
+
+
+@checked
+def operations(algorithm: Number) -> int:
+    """Return the real additions and multiplications of an algorithm for each sample.
+
+    Parameters
+    ----------
+    algorithm : int
+        From 1 to 6.
+
+    Returns
+    -------
+    int
+
+    Notes
+    -----
+    Of its blocks: a padded transform takes some 5 N log2 N operations and the magnitudes 3 N; the
+    parabola, one step of a filter with two states, the choice of a window, and the fusion take some
+    tens. What a sensor does, two sensors do twice.
+
+    Examples
+    --------
+    >>> operations(3) > 2 * operations(1)
+    True
+    """
+    n = int(reported().chosen.nfft)
+    blocks = {"transform": round(5 * n * np.log2(n)) + 3 * n, "parabola": 8, "filter": 40}
+    sensor = sum(blocks.values()) + 20 * (algorithm in (2, 4, 5))
+    return 2 * sensor + 50 if algorithm in (3, 4, 5) else sensor

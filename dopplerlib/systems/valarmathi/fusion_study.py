@@ -12,6 +12,7 @@ from ..._records import record
 from ..._typing import FloatArray
 from ...evaluation.intervals import ConfidenceInterval, proportion_interval
 from .algorithms import ALGORITHMS, AlgorithmRuns, Number, run_algorithms
+from .error_measures import MEASURES, titled
 from .published import reported
 from .velocity_filter import _decibels
 from .velocity_paths import PATHS, PathName
@@ -21,8 +22,7 @@ from .window_simulation import window_table
 SEED = 3
 RUNS = 100
 SNRS_DB = np.arange(-10.0, 41.0, 5.0)
-MEASURES = ("whole", "maneuver", "constant", "cee", "delay")
-CLIFF_RUNS = 200
+CLIFF_RUNS = 100
 CLIFF_SNRS_DB = np.arange(-8.0, -1.0)
 
 
@@ -38,8 +38,7 @@ class FusionStudy:
     snrs_db : ndarray, shape (S,)
         Signal-to-noise ratios of a sample in dB.
     measures : dict of str to ndarray, shape (paths, S, 6, runs)
-        Of each run, root mean square errors in m/s of the "whole" record, of the "maneuver" and
-        at "constant" velocity; the document's "cee" at the end in percent; and the "delay" in ms.
+        Of each run, those of `run_measures`.
 
     Examples
     --------
@@ -47,8 +46,6 @@ class FusionStudy:
     >>> study = FusionStudy(("path 1",), [0.0, 15.0], measures)
     >>> study.runs, study.of("cee", "path 1", 2).shape, len(study.summary("path 1", 15.0))
     (3, (2, 3), 6)
-    >>> len(study.cells())
-    2
     """
 
     paths: tuple[str, ...]
@@ -83,31 +80,9 @@ class FusionStudy:
         """Return errors and delays of one cell, in the form of `AlgorithmRuns.summary`."""
         levels = self.snrs_db.tolist()
         j = levels.index(_checks.one_of("snr_db", snr_db, levels))
-        half = (reported().chosen.fixed_window - 1) / 2 * reported().stated.T
-        columns = {
-            "maneuver (m/s)": ("maneuver", 1.0),
-            "constant velocity (m/s)": ("constant", 1.0),
-            "whole record (m/s)": ("whole", 1.0),
-            "delay (half windows)": ("delay", 1e3 * half),
-        }
         return {
-            name: {
-                title: self.of(measure, path, number)[j] / unit
-                for title, (measure, unit) in columns.items()
-            }
+            name: titled({m: self.of(m, path, number)[j] for m in self.measures})
             for number, name in ALGORITHMS.items()
-        }
-
-    def cells(self) -> dict[tuple[str, float], dict[tuple[int, str], FloatArray]]:
-        """Return all measures by path and signal-to-noise ratio, in the form of `cell_measures`."""
-        return {
-            (path, float(snr_db)): {
-                (algorithm, measure): self.of(measure, path, algorithm)[j]
-                for algorithm in ALGORITHMS
-                for measure in self.measures
-            }
-            for path in self.paths
-            for j, snr_db in enumerate(self.snrs_db)
         }
 
 
@@ -185,25 +160,19 @@ def cell_measures(result: AlgorithmRuns) -> dict[tuple[int, str], FloatArray]:
     Returns
     -------
     dict of (int, str) to ndarray, shape (runs,)
-        By algorithm and measure; see `FusionStudy`.
+        By algorithm and measure; see `run_measures`.
 
     Examples
     --------
     >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
     >>> table = WindowTable([0, 10], [0, 20], [8, 64], cee)
     >>> len(cell_measures(study_cell("path 2", 15.0, table, runs=1)))
-    30
+    36
     """
     return {
         (algorithm, measure): values
         for algorithm in ALGORITHMS
-        for measure, values in {
-            "whole": result.rmse(algorithm),
-            "maneuver": result.rmse(algorithm, "maneuver"),
-            "constant": result.rmse(algorithm, "constant"),
-            "cee": 100 * result.cee(algorithm)[:, -1],
-            "delay": 1e3 * result.delay(algorithm),
-        }.items()
+        for measure, values in result.measures(algorithm).items()
     }
 
 

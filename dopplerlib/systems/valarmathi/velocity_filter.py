@@ -14,7 +14,7 @@ from .window_choice import WindowTable
 from .window_transform import FilteredDoppler, _share, measurement_variance
 
 _decibels = partial(_checks.one_number, check=_checks.decibels)
-FEEDBACK = ("none", "own", "fused")
+FEEDBACK = ("none", "own", "fused", "state")
 
 
 @checked
@@ -60,14 +60,15 @@ class VelocityTrack:
 @checked
 def filter_velocity(
     doppler: FilteredDoppler,
-    snr_db: Annotated[float, _decibels],
+    snr_db: Annotated[FloatArray, _checks.decibels],
     *,
     window: Count | None = None,
     table: WindowTable | None = None,
-    feedback: Literal["none", "own", "fused"] = "none",
+    feedback: Literal["none", "own", "fused", "state"] = "none",
     delayed: bool = False,
     hop: Count = 1,
     scale: Positive = 1.0,
+    q: Positive | None = None,
 ) -> VelocityTrack:
     """Run a filter behind each sensor, and fuse their states as the document does.
 
@@ -75,15 +76,16 @@ def filter_velocity(
     ----------
     doppler : FilteredDoppler
         Measurements, ``v`` of shape (W, runs, sensors, K) with one or two sensors.
-    snr_db : float
-        True signal-to-noise ratio in dB, for the variance of the measurements.
+    snr_db : array_like, shape () or (sensors,)
+        Signal-to-noise ratio in dB that each filter takes, for the variance of the measurements.
     window : int, optional
         Length of the fixed window, or of the first one; that of `chosen` if None.
     table : WindowTable, optional
         For the choice of windows; needed with a feedback.
-    feedback : {"none", "own", "fused"}
+    feedback : {"none", "own", "fused", "state"}
         What chooses the next window: nothing, each filter's own acceleration and measured
-        signal-to-noise ratio, or the fused acceleration and the mean of the ratios.
+        signal-to-noise ratio, or the fused acceleration and the mean of the ratios. With "state"
+        both filters also go on from the fused state and covariance, which counts it twice.
     delayed : bool
         Whether the filters know that a measurement belongs to the middle of its window: H is
         [1, -delay] then and not [1, 0].
@@ -91,6 +93,8 @@ def filter_velocity(
         Samples from one measurement that is used to the next.
     scale : float
         Factor to the assumed variance of the measurements.
+    q : float, optional
+        Intensity of the white jerk in (m/s^2)^2/s; that of `chosen` if None.
 
     Returns
     -------
@@ -100,8 +104,8 @@ def filter_velocity(
     ------
     ValueError
         If an argument is not of the kind described, `doppler` has not one or two sensors or begins
-        with what is missing, `window` is none of its windows, or a feedback is asked for without a
-        table of the same windows.
+        with what is missing, `snr_db` is of another number of sensors, `window` is none of its
+        windows, or a feedback is asked for without a table of the same windows.
 
     Notes
     -----
@@ -121,6 +125,10 @@ def filter_velocity(
     window = int(own.fixed_window) if window is None else window
     if doppler.v.ndim != 4 or doppler.v.shape[2] not in (1, 2):
         raise ValueError(f"doppler.v must have shape (W, runs, 1 or 2, K), got {doppler.v.shape}")
+    if snr_db.shape not in ((), doppler.v.shape[2:3]):
+        raise ValueError(
+            f"snr_db must be one number, or one a sensor of {doppler.v.shape[2]}, got {snr_db}"
+        )
     if window not in doppler.windows:
         raise ValueError(f"window must be one of {doppler.windows.tolist()}, got {window}")
     if code:
@@ -144,10 +152,10 @@ def filter_velocity(
     fused_x, choice = np.empty((runs, count, 2)), np.empty(shape, np.int64)
     innovation, S = np.empty(shape), np.empty(shape)
     settings = (
-        measurement_variance(doppler.windows, snr_db) * scale,
+        measurement_variance(doppler.windows[:, None], np.broadcast_to(snr_db, sensors)) * scale,
         doppler.delays * bool(delayed),
         said.T * hop,
-        own.q,
+        own.q if q is None else q,
         own.acceleration_std,
         code,
         int(np.flatnonzero(doppler.windows == window)[0]),

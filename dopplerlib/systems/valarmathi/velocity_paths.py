@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from ..._hints import Booleans, checked, exactly
+from ..._hints import Booleans, Positive, checked, exactly
 from ..._records import record
 from ..._typing import FloatArray
 from ...signal.synthesis import velocity_profile
@@ -59,7 +59,7 @@ class VelocityPath:
 
 
 @checked
-def velocity_path(name: PathName) -> VelocityPath:
+def velocity_path(name: PathName, gentle: Positive | None = None) -> VelocityPath:
     """Return one of the courses of velocity.
 
     Parameters
@@ -68,6 +68,8 @@ def velocity_path(name: PathName) -> VelocityPath:
         "path 2" is the fast maneuver whose numbers the document states. "path 1", which it does
         not define, has a gentle acceleration instead. "fighter" begins at the Mach number and
         has the accelerations that the document claims and does not simulate.
+    gentle : float, optional
+        Acceleration of path 1 in m/s^2; that of `chosen` if None.
 
     Returns
     -------
@@ -76,7 +78,7 @@ def velocity_path(name: PathName) -> VelocityPath:
     Raises
     ------
     ValueError
-        If `name` is none of the three.
+        If `name` is none of the three, or the target would turn back on path 1.
 
     Examples
     --------
@@ -86,8 +88,11 @@ def velocity_path(name: PathName) -> VelocityPath:
     """
     said, own = reported().stated, reported().chosen
     rate = (said.v_before - said.v_after) / said.maneuver
+    gentle = own.gentle_acceleration if gentle is None else gentle
+    if gentle * said.maneuver >= said.v_before:
+        raise ValueError(f"gentle must leave a velocity after {said.maneuver} s, got {gentle}")
     v0, down, up = {
-        "path 1": (said.v_before, own.gentle_acceleration, own.gentle_acceleration),
+        "path 1": (said.v_before, gentle, gentle),
         "path 2": (said.v_before, rate, rate),
         "fighter": (
             said.mach * own.speed_of_sound,

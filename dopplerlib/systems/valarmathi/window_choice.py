@@ -7,7 +7,7 @@ import numpy as np
 from ... import _checks
 from ..._hints import checked, exactly, shaped
 from ..._records import record
-from ..._typing import FloatArray, IntArray
+from ..._typing import BoolArray, FloatArray, IntArray
 
 
 def _rising(name, value):
@@ -49,8 +49,11 @@ class WindowTable:
     Examples
     --------
     >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
-    >>> WindowTable([0, 10], [0, 20], [8, 64], cee).best.tolist()
-    [[8, 64], [8, 8]]
+    >>> table = WindowTable([0, 10], [0, 20], [8, 64], cee)
+    >>> table.best.tolist(), table.inside.any().item()
+    ([[8, 64], [8, 8]], False)
+    >>> table.labels()[10.0], table.only([8, 64]).best.shape
+    (['≤ 8', '≤ 8'], (2, 2))
     """
 
     accelerations: Rising
@@ -68,6 +71,32 @@ class WindowTable:
     def best(self) -> IntArray:
         """Windows with the least error, shape (A, B)."""
         return self.windows[np.argmin(self.cee, axis=-1)]
+
+    @property
+    def inside(self) -> BoolArray:
+        """Whether they are neither the first nor the last one that was tried, shape (A, B).
+
+        Where not, the least error may lie beyond: then `best` is the best of these windows, and
+        no optimum.
+        """
+        place = np.argmin(self.cee, axis=-1)
+        return (place > 0) & (place < len(self.windows) - 1)
+
+    def labels(self) -> dict[float, list[str]]:
+        """Return `best` as text by acceleration; at an end of the windows tried with ≤ or ≥."""
+        signs = np.where(self.inside, "", np.where(self.best == self.windows[0], "≤ ", "≥ "))
+        return {
+            float(a): [f"{sign}{window}" for sign, window in zip(*row, strict=True)]
+            for a, *row in zip(self.accelerations, signs, self.best, strict=True)
+        }
+
+    @checked
+    def only(self, windows: Lengths) -> "WindowTable":
+        """Return the table of some of the windows."""
+        if not np.isin(windows, self.windows).all():
+            raise ValueError(f"windows must be some of {self.windows.tolist()}, got {windows}")
+        places = np.searchsorted(self.windows, windows)
+        return WindowTable(self.accelerations, self.snrs_db, windows, self.cee[..., places])
 
 
 @checked

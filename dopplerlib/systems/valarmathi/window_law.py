@@ -1,6 +1,6 @@
 """The best window in closed form, and what interpolating it linearly costs."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -116,8 +116,13 @@ def linear_cost(accelerations: Rising, snrs_db: Rising, points: Count = 40) -> F
 
 
 @checked
-def plane_error(accelerations: Span, snrs_db: Span, points: Count = 40) -> FloatArray:
-    """Return the relative error of the least-squares plane through the best windows.
+def linear_error(
+    accelerations: Span,
+    snrs_db: Span,
+    points: Count = 40,
+    along: Literal["acceleration", "snr", "both"] = "both",
+) -> FloatArray:
+    """Return the relative error of the least-squares line or plane through the best windows.
 
     Parameters
     ----------
@@ -125,11 +130,13 @@ def plane_error(accelerations: Span, snrs_db: Span, points: Count = 40) -> Float
         Smallest and largest.
     points : int
         Points along each axis.
+    along : {"acceleration", "snr", "both"}
+        Variable of the line, one for each value of the other variable; or the plane in both.
 
     Returns
     -------
     ndarray, shape (points, points)
-        The plane, in acceleration and dB, over the best window, less one.
+        The line, in acceleration or in dB, over the best window, less one.
 
     Raises
     ------
@@ -139,20 +146,64 @@ def plane_error(accelerations: Span, snrs_db: Span, points: Count = 40) -> Float
 
     Examples
     --------
-    >>> np.abs(plane_error((10.0, 80.0), (10.0, 40.0), points=10)).max().round(2).item()
+    >>> for along in ("acceleration", "snr", "both"):
+    ...     error = linear_error((10.0, 80.0), (10.0, 40.0), points=10, along=along)
+    ...     print(np.abs(error).max().round(2))
+    0.17
+    0.26
     1.2
     """
     _checks.positive("accelerations", accelerations)
     points = _checks.count("points", points, 1000)
-    a, s = np.meshgrid(
-        np.linspace(*_checks.increasing_pair("accelerations", accelerations), points),
-        np.linspace(*_checks.increasing_pair("snrs_db", snrs_db), points),
-        indexing="ij",
-    )
-    best = best_window(a, s)
-    design = np.stack([a, s, np.ones_like(a)], axis=-1)
-    weights, *_ = np.linalg.lstsq(design.reshape(-1, 3), best.ravel())
-    return design @ weights / best - 1
+    a = np.linspace(*_checks.increasing_pair("accelerations", accelerations), points)
+    s = np.linspace(*_checks.increasing_pair("snrs_db", snrs_db), points)
+    best = best_window(a[:, None], s)
+    if along == "both":
+        a, s = np.broadcast_arrays(a[:, None], s)
+        design = np.stack([a.ravel(), s.ravel(), np.ones(a.size)], axis=-1)
+        weights, *_ = np.linalg.lstsq(design, best.ravel())
+        return (design @ weights).reshape(best.shape) / best - 1
+    lines = best if along == "acceleration" else best.T
+    x = a if along == "acceleration" else s
+    design = np.stack([x, np.ones_like(x)], axis=-1)
+    weights, *_ = np.linalg.lstsq(design, lines)
+    error = design @ weights / lines - 1
+    return error if along == "acceleration" else error.T
+
+
+@checked
+def best_lengths(table: WindowTable) -> FloatArray:
+    """Return the best windows of a simulation, interpolated by a parabola in logarithms.
+
+    Parameters
+    ----------
+    table : WindowTable
+        As `window_table` returns it.
+
+    Returns
+    -------
+    ndarray, shape (A, B)
+        In samples, any number; NaN where the best of the windows tried is the first or last one.
+
+    Raises
+    ------
+    ValueError
+        If `table` is not of the kind described, or an error is not positive.
+
+    Examples
+    --------
+    >>> windows = np.arange(4, 40)
+    >>> a, snr_db = np.array([5.0, 20.0])[:, None, None], np.array([0.0, 20.0])[:, None]
+    >>> table = WindowTable([5, 20], [0, 20], windows, law_rmse(windows, a, snr_db))
+    >>> best_lengths(table).round(1).tolist()
+    [[nan, 28.5], [nan, 16.5]]
+    """
+    _checks.positive("table.cee", table.cee)
+    log_n, log_cee = np.log(table.windows), np.log(table.cee)
+    lengths = np.full(table.inside.shape, np.nan)
+    for i, j in np.argwhere(table.inside):
+        lengths[i, j] = np.exp(_vertex(log_n, log_cee[i, j]))
+    return lengths
 
 
 @checked
@@ -185,20 +236,20 @@ def law_exponents(table: WindowTable) -> tuple[float, float]:
     >>> [round(one, 1) for one in law_exponents(table)]
     [-0.4, -0.2]
     """
-    _checks.positive("table.cee", table.cee)
-    log_n, log_cee = np.log(table.windows), np.log(table.cee)
-    rows = []
-    for i, a in enumerate(table.accelerations):
-        for j, snr_db in enumerate(table.snrs_db):
-            k = int(np.argmin(log_cee[i, j]))
-            if a == 0 or k in (0, len(log_n) - 1):
-                continue
-            near = slice(k - 1, k + 2)
-            bend, slope, _ = np.polyfit(log_n[near] - log_n[k], log_cee[i, j, near], 2)
-            rows.append((np.log(a), snr_db / 10 * np.log(10), log_n[k] - slope / (2 * bend)))
-    if len(rows) < 4:
-        raise ValueError(f"table must have four cells with a minimum inside, got {len(rows)}")
-    log_a, log_snr, best = np.array(rows).T
+    best = best_lengths(table)
+    counts = ~np.isnan(best) & (table.accelerations != 0)[:, None]
+    if counts.sum() < 4:
+        raise ValueError(f"table must have four cells with a minimum inside, got {counts.sum()}")
+    i, j = np.nonzero(counts)
+    log_a, log_snr = np.log(table.accelerations[i]), table.snrs_db[j] / 10 * np.log(10)
     design = np.stack([log_a, log_snr, np.ones_like(log_a)], axis=-1)
-    (first, second, _), *_ = np.linalg.lstsq(design, best)
+    (first, second, _), *_ = np.linalg.lstsq(design, np.log(best[counts]))
     return float(first), float(second)
+
+
+def _vertex(x, y):
+    """Return where a parabola through the least value and its neighbors is least."""
+    k = int(np.argmin(y))
+    near = slice(k - 1, k + 2)
+    bend, slope, _ = np.polyfit(x[near] - x[k], y[near], 2)
+    return x[k] - slope / (2 * bend)

@@ -22,6 +22,7 @@ def window_table(
     windows: Lengths | None = None,
     judge: Literal["measurement", "filter"] = "measurement",
     duration: Positive = 1.2,
+    q: Positive | None = None,
 ) -> WindowTable:
     """Find the best window for every acceleration and signal-to-noise ratio by simulation.
 
@@ -40,6 +41,8 @@ def window_table(
         Kalman filter behind it. The document does not say.
     duration : float
         How long the target decelerates in s, after a while without.
+    q : float, optional
+        See `filter_velocity`, of which the second judge needs it.
 
     Returns
     -------
@@ -81,7 +84,8 @@ def window_table(
             for w, window in enumerate(windows):
                 found = doppler.v[w, :, 0]
                 if judge == "filter":
-                    found = filter_velocity(doppler, snr_db, window=int(window)).x[:, 0, :, 0]
+                    track = filter_velocity(doppler, snr_db, window=int(window), q=q)
+                    found = track.x[:, 0, :, 0]
                 error = cumulative_error(v[own.scored :], found[:, own.scored - own.first :])
                 cee[i, j, w] = error[:, -1].mean()
     return WindowTable(accelerations, snrs_db, windows, cee)

@@ -1,6 +1,7 @@
 """The Doppler filter of the document: a velocity from every window, at every sample."""
 
 import os
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from itertools import pairwise
@@ -61,6 +62,17 @@ class FilteredDoppler:
     def delays(self) -> FloatArray:
         """Time from the middle of each window to its last sample, in s, shape (W,)."""
         return (self.windows - 1) / 2 * reported().stated.T
+
+    @checked
+    def part(self, windows: Lengths, sensors: Sequence[Index] = (0,)) -> "FilteredDoppler":
+        """Return the measurements of some windows and sensors, `v` of shape (W, runs, S, K)."""
+        if not np.isin(windows, self.windows).all() or self.v.ndim != 4:
+            raise ValueError(f"windows must be some of {self.windows.tolist()}, got {windows}")
+        if not len(sensors) or max(sensors) >= self.v.shape[2]:
+            raise ValueError(f"sensors must be below {self.v.shape[2]}, got {sensors}")
+        rows = np.searchsorted(self.windows, windows)
+        v, snr_db = (one[rows][:, :, list(sensors)] for one in (self.v, self.snr_db))
+        return FilteredDoppler(windows, self.first, v, snr_db)
 
 
 @checked

@@ -114,9 +114,13 @@ def test_either_file_has_its_cells_in_the_order_of_paths_and_ratios(monkeypatch)
     monkeypatch.setattr(tool.made, "cell_measures", lambda runs: runs)
     monkeypatch.setattr(tool, "error_rows", lambda runs: [["errors", runs]])
     monkeypatch.setattr(tool, "failure_rows", lambda runs: [["failures", runs]])
+    monkeypatch.setattr(tool.swept, "PATHS", {"path 2": ("path 2", None)})
+    monkeypatch.setattr(tool.swept, "SNRS_DB", (10,))
+    monkeypatch.setattr(tool.swept, "sweep_cell", lambda name, snr_db, table, runs: (name, runs))
+    monkeypatch.setattr(tool, "sweep_rows", lambda name, snr_db, cell: [f"{cell}"])
     parameters = {"snrs_db": [0.0, 5.0], "threshold_snrs_db": [-1.5]}
     monkeypatch.setattr(tool, "PARAMETERS", tool.PARAMETERS | parameters)
-    errors, failures = tool.contents(list(tool.rows(tool.items())))
+    errors, failures, swept = tool.contents(list(tool.rows(tool.items())))
     assert errors.splitlines() == [
         tool.HEADS[0],
         *(f"{path},{snr_db},errors,{made.RUNS}" for path in (1, 2, 3) for snr_db in (0, 5)),
@@ -125,6 +129,29 @@ def test_either_file_has_its_cells_in_the_order_of_paths_and_ratios(monkeypatch)
         tool.HEADS[1],
         *(f"{path},-1.5,failures,{made.CLIFF_RUNS}" for path in (1, 2, 3)),
     ]
+    assert swept.splitlines() == [tool.HEADS[2], f"('path 2', {tool.swept.RUNS})"]
+
+
+def test_the_sweep_has_every_cell_and_one_comes_out_again_alone(table):
+    """One run of it; a window may be chosen otherwise on another processor, as above."""
+    sweep = system.saved_sweep()
+    assert {len(runs) for runs in sweep.cells.values()} == {tool.swept.RUNS}
+    cells = {(path, snr_db) for path in tool.swept.PATHS for snr_db in tool.swept.SNRS_DB}
+    assert {key[:2] for key in sweep.cells} == cells
+    again = tool.swept.sweep_cell("path 1, 5 m/s²", 10, table, runs=1)
+    assert {key[2:] for key in sweep.cells if key[:2] == ("path 1, 5 m/s²", 10)} == set(again)
+    saved = np.array([sweep.cells["path 1, 5 m/s²", 10, *key][0] for key in again])
+    found = np.array([float(f"{values[0]:.4g}") for values in again.values()])
+    assert (np.abs(found / saved - 1) < 2e-3).mean() > 0.9
+    lines = tool.sweep_rows("path 1, 5 m/s²", 10, again)
+    written = read_lines("velocity_fusion.sweep.csv", folder=results)
+    assert written[0] == tool.HEADS[2]
+    heads = {line.rpartition(",")[0].rsplit(",", 5)[0] for line in lines}
+    assert heads == {
+        line.rpartition(",")[0].rsplit(",", 5)[0] for line in written if line.startswith("1,10,")
+    }
+    with pytest.raises(ValueError, match="must be a cell of the sweep"):
+        sweep.of("cee", "1", 7, path="path 2", snr_db=0, q=30)
 
 
 def test_errors_at_constant_velocity_fall_with_the_amplitude_of_the_noise(study):
