@@ -27,18 +27,12 @@ Axis = tuple[Literal["sigma_x", "sigma_v", "w"], Annotated[FloatArray, exactly(N
 class PathScores:
     """Errors of the filter on the five paths, in every run.
 
-    Attributes
-    ----------
-    figures : tuple of int
-        Numbers of the figures, in the order of the arrays.
-    settled : ndarray, shape (paths, runs)
-        Largest position error after the first second, in m.
-    whole : ndarray, shape (paths, runs)
-        Largest position error of the whole record, in m.
-    speed : ndarray, shape (paths, runs, 2)
-        Root mean square of the errors of v_x and v_y after the first second, in m/s.
-    resolution : float
-        Range resolution in m, the measure of the claims.
+    figures: Numbers of the figures, in the order of the arrays.
+    settled (paths, runs): Largest position error after the first second, in m.
+    whole (paths, runs): Largest position error of the whole record, in m.
+    speed (paths, runs, 2): Root mean square of the errors of v_x and v_y after the first second, in
+        m/s.
+    resolution: Range resolution in m, the measure of the claims.
 
     Examples
     --------
@@ -92,18 +86,9 @@ def score_paths(
 ) -> PathScores:
     """Run all five paths and score them.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records of each path.
-    rng : numpy.random.Generator
-        Source of the measurement noise.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    PathScores
+    runs: Number of independent records of each path.
+    rng: Source of the measurement noise.
+    s: Those of the data file if None.
 
     Examples
     --------
@@ -176,23 +161,14 @@ def claim_map(
 ) -> dict[str, FloatArray]:
     """Return the fraction of runs in which each claim holds, over two settings.
 
-    Parameters
-    ----------
-    rows, columns : tuple (str, sequence of float)
-        Name and values of a setting: "sigma_x", "sigma_v" or "w" of `AutomotiveSettings`.
-    runs : int
-        Number of records of each path at each place of the map.
-    rng : numpy.random.Generator
-        Source of the measurement noise. Every place gets the same draws, scaled: places differ by
+    rows, columns: Name and values of a setting: "sigma_x", "sigma_v" or "w" of
+        `AutomotiveSettings`.
+    runs: Number of records of each path at each place of the map.
+    rng: Source of the measurement noise. Every place gets the same draws, scaled: places differ by
         their settings alone.
-    s : AutomotiveSettings, optional
-        What is not varied; those of the data file if None.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (3, rows, columns)
-        For each of `CLAIMS` the fraction of runs in which it is true, and the ends of its 95 %
-        interval.
+    s: What is not varied; those of the data file if None.
+    Returns (3, rows, columns): For each of `CLAIMS` the fraction of runs in which it is true, and
+        the ends of its 95 % interval.
 
     Examples
     --------
@@ -218,16 +194,9 @@ def claim_map(
 def decided_claims(shares: Reals) -> IntArray:
     """Return 1 where a claim holds in a fraction `MOST` of the runs, -1 where not, 0 if undecided.
 
-    Parameters
-    ----------
-    shares : array_like, shape (3, ...)
-        Shares and the ends of their intervals, from `claim_map`.
-
-    Returns
-    -------
-    ndarray of int, shape (...)
-        1 where the whole interval says so, -1 where it says the contrary, 0 where the runs are too
-        few to tell.
+    shares (3, ...): Shares and the ends of their intervals, from `claim_map`.
+    Returns (...): 1 where the whole interval says so, -1 where it says the contrary, 0 where the
+        runs are too few to tell.
 
     Examples
     --------
@@ -245,18 +214,10 @@ def claim_borders(
 ) -> list[tuple[float, float, bool]]:
     """Return the borders between the values of a setting at which a claim holds and does not.
 
-    Parameters
-    ----------
-    values : array_like, shape (values,)
-        Of the setting, in rising order.
-    shares : array_like, shape (3, values)
-        A row or a column of what `claim_map` returns for a claim.
-
-    Returns
-    -------
-    list of tuple (float, float, bool)
-        The last value before and the first one after, both decided, and whether the claim holds
-        after it.
+    values (values,): Of the setting, in rising order.
+    shares (3, values): A row or a column of what `claim_map` returns for a claim.
+    Returns: The last value before and the first one after, both decided, and whether the claim
+        holds after it.
 
     Examples
     --------
@@ -284,23 +245,12 @@ def claim_borders_along(
 ) -> dict[str, list[tuple[float, float, bool]]]:
     """Return the borders of every claim along one setting, see `claim_borders`.
 
-    Parameters
-    ----------
-    name : {"sigma_x", "sigma_v", "w"}
-        The setting.
-    values : array_like, shape (values,)
-        In rising order.
-    runs : int
-        Number of records of each path at each value.
-    rng : numpy.random.Generator
-        Source of the measurement noise.
-    s : AutomotiveSettings, optional
-        What is not varied; those of the data file if None.
-
-    Returns
-    -------
-    dict of str to list
-        For each of `CLAIMS`, see `claim_borders`.
+    name: The setting.
+    values (values,): In rising order.
+    runs: Number of records of each path at each value.
+    rng: Source of the measurement noise.
+    s: What is not varied; those of the data file if None.
+    Returns: For each of `CLAIMS`, see `claim_borders`.
 
     Examples
     --------

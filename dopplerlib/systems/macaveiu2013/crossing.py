@@ -23,16 +23,10 @@ Pair = Annotated[FloatArray, exactly(2, None, 4)]  # states of two targets at al
 class Crossing:
     """Tracks of two crossing targets, and whether they were swapped or lost.
 
-    Attributes
-    ----------
-    truth : ndarray, shape (2, K, 4)
-        True states.
-    x : ndarray, shape (runs, 2, K, 4)
-        Estimates.
-    swapped : ndarray of bool, shape (runs,)
-        The tracks are nearer to each other's target at the end.
-    lost : ndarray of bool, shape (runs,)
-        Both tracks follow one target at the end.
+    truth (2, K, 4): True states.
+    x (runs, 2, K, 4): Estimates.
+    swapped (runs,): The tracks are nearer to each other's target at the end.
+    lost (runs,): Both tracks follow one target at the end.
     """
 
     truth: Pair
@@ -45,16 +39,9 @@ class Crossing:
 def crossing_paths(angle: Real, s: AutomotiveSettings | None = None) -> FloatArray:
     """Return two straight paths that meet half way, 10 m ahead of the radar.
 
-    Parameters
-    ----------
-    angle : float
-        Angle between the headings in rad.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (2, K, 4)
+    angle: Angle between the headings in rad.
+    s: Those of the data file if None.
+    Returns (2, K, 4)
 
     Examples
     --------
@@ -83,25 +70,13 @@ def track_crossing(
 ) -> Crossing:
     """Track two targets whose detections come without names.
 
-    Parameters
-    ----------
-    truth : array_like, shape (2, K, 4)
-        True states.
-    rule : {"each its nearest", "greedy", "Hungarian"}
-        Each track takes the detection with the smallest NIS, the other one's too; the best pair
+    truth (2, K, 4): True states.
+    rule: Each track takes the detection with the smallest NIS, the other one's too; the best pair
         first, the rest for the other; or the two pairs with the smallest sum.
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of the noise.
-    velocity : bool
-        Whether the association looks at the velocities, or at the positions alone.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    Crossing
+    runs: Number of independent records.
+    rng: Source of the noise.
+    velocity: Whether the association looks at the velocities, or at the positions alone.
+    s: Those of the data file if None.
 
     Notes
     -----

@@ -16,22 +16,10 @@ from .settings import AutomotiveSettings, automotive_settings
 def acceleration_lag(a: Real, s: AutomotiveSettings | None = None) -> FloatArray:
     """Return the steady-state lag of the filter behind a constant acceleration.
 
-    Parameters
-    ----------
-    a : float
-        Acceleration along an axis in m/s^2.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (2,)
-        Truth minus mean estimate: position in m, velocity in m/s.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or leaves no settled filter.
+    a: Acceleration along an axis in m/s^2.
+    s: Those of the data file if None.
+    Returns (2,): Truth minus mean estimate: position in m, velocity in m/s.
+    Raises ValueError if an argument is not of the kind described, or leaves no settled filter.
 
     Examples
     --------
@@ -47,21 +35,10 @@ def acceleration_lag(a: Real, s: AutomotiveSettings | None = None) -> FloatArray
 def settled_noise_std(s: AutomotiveSettings | None = None) -> FloatArray:
     """Return the standard deviation that the measurement noise leaves in the settled estimate.
 
-    Parameters
-    ----------
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (2,)
-        Position in m, velocity in m/s. Smaller than the filter reports, since the target does
-        not wander as E_x says.
-
-    Raises
-    ------
-    ValueError
-        If `s` is not of the kind described, or leaves no settled filter.
+    s: Those of the data file if None.
+    Returns (2,): Position in m, velocity in m/s. Smaller than the filter reports, since the target
+        does not wander as E_x says.
+    Raises ValueError if `s` is not of the kind described, or leaves no settled filter.
 
     Notes
     -----
@@ -84,22 +61,10 @@ def settled_noise_std(s: AutomotiveSettings | None = None) -> FloatArray:
 def settled_rms(a: Real, s: AutomotiveSettings | None = None) -> FloatArray:
     """Return the root mean square error behind a constant acceleration: lag and noise together.
 
-    Parameters
-    ----------
-    a : float
-        Acceleration along an axis in m/s^2.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (2,)
-        Position in m, velocity in m/s.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or leaves no settled filter.
+    a: Acceleration along an axis in m/s^2.
+    s: Those of the data file if None.
+    Returns (2,): Position in m, velocity in m/s.
+    Raises ValueError if an argument is not of the kind described, or leaves no settled filter.
 
     Examples
     --------
@@ -113,24 +78,11 @@ def settled_rms(a: Real, s: AutomotiveSettings | None = None) -> FloatArray:
 def best_w(a: Real, component: Literal[0, 1] = 1, s: AutomotiveSettings | None = None) -> float:
     """Return the w that makes the error behind a constant acceleration smallest.
 
-    Parameters
-    ----------
-    a : float
-        Acceleration along an axis in m/s^2.
-    component : {0, 1}
-        0 for the position, 1 for the velocity.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    float
-        In m/s, between 0.001 and 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or leaves no settled filter.
+    a: Acceleration along an axis in m/s^2.
+    component: 0 for the position, 1 for the velocity.
+    s: Those of the data file if None.
+    Returns: In m/s, between 0.001 and 1.
+    Raises ValueError if an argument is not of the kind described, or leaves no settled filter.
 
     Examples
     --------
@@ -152,23 +104,11 @@ def best_w(a: Real, component: Literal[0, 1] = 1, s: AutomotiveSettings | None =
 def velocity_response(rate: Positive, s: AutomotiveSettings | None = None) -> complex:
     """Return the frequency response of the steady-state filter, from true to estimated velocity.
 
-    Parameters
-    ----------
-    rate : float
-        Angular frequency of the velocity in rad/s.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    complex
-        Estimated over true velocity: the modulus is the fraction of the amplitude that is left, the
-        argument the phase, negative when late.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or leaves no settled filter.
+    rate: Angular frequency of the velocity in rad/s.
+    s: Those of the data file if None.
+    Returns: Estimated over true velocity: the modulus is the fraction of the amplitude that is
+        left, the argument the phase, negative when late.
+    Raises ValueError if an argument is not of the kind described, or leaves no settled filter.
 
     Notes
     -----

@@ -24,18 +24,11 @@ Measured = Annotated[FloatArray, exactly(None, None, 4)]  # [x, v_x, y, v_y] in 
 class VehicleRuns:
     """One path, measured and filtered many times.
 
-    Attributes
-    ----------
-    path : VehiclePath
-        The path.
-    z : ndarray, shape (runs, K, 4)
-        Measurements [x, v_x, y, v_y] in m and m/s.
-    x : ndarray, shape (runs, K, 4)
-        Estimates; the first is the first measurement.
-    P : ndarray, shape (K, 4, 4)
-        Their covariance as the filter reports it, the same in all runs.
-    nis : ndarray, shape (runs, K)
-        Normalized innovation squared; NaN at the first sample.
+    path: The path.
+    z (runs, K, 4): Measurements [x, v_x, y, v_y] in m and m/s.
+    x (runs, K, 4): Estimates; the first is the first measurement.
+    P (K, 4, 4): Their covariance as the filter reports it, the same in all runs.
+    nis (runs, K): Normalized innovation squared; NaN at the first sample.
 
     Examples
     --------
@@ -77,20 +70,10 @@ def track_vehicle(
 ) -> VehicleRuns:
     """Measure and filter a path as the document does: H = I, start at the first measurement.
 
-    Parameters
-    ----------
-    path : VehiclePath
-        One of `vehicle_paths`, or another one sampled alike.
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of the measurement noise. Run 3 is the same for any number of runs.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    VehicleRuns
+    path: One of `vehicle_paths`, or another one sampled alike.
+    runs: Number of independent records.
+    rng: Source of the measurement noise. Run 3 is the same for any number of runs.
+    s: Those of the data file if None.
 
     Notes
     -----
@@ -118,26 +101,13 @@ def measure_vehicle(
 ) -> FloatArray:
     """Return measurements of all four components of a path, with noise (Eq 5).
 
-    Parameters
-    ----------
-    truth : array_like, shape (K, 4)
-        True states.
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of the measurement noise. Run 3 is the same for any number of runs.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (runs, K, 4)
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the records would have more than ten million
-        samples.
+    truth (K, 4): True states.
+    runs: Number of independent records.
+    rng: Source of the measurement noise. Run 3 is the same for any number of runs.
+    s: Those of the data file if None.
+    Returns (runs, K, 4)
+    Raises ValueError if an argument is not of the kind described, or the records would have more
+        than ten million samples.
 
     Examples
     --------
@@ -160,21 +130,11 @@ def tracking_errors(
 ) -> FloatArray:
     """Measure and filter several paths at once; return errors only, and fast.
 
-    Parameters
-    ----------
-    paths : iterable of VehiclePath
-        The paths, of one length.
-    runs : int
-        Number of independent records of each.
-    rng : numpy.random.Generator
-        Source of the measurement noise; every path has noise of its own.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (paths, runs, K, 4)
-        Estimate minus truth, the same as `track_vehicle` gives.
+    paths: The paths, of one length.
+    runs: Number of independent records of each.
+    rng: Source of the measurement noise; every path has noise of its own.
+    s: Those of the data file if None.
+    Returns (paths, runs, K, 4): Estimate minus truth, the same as `track_vehicle` gives.
 
     Examples
     --------
@@ -199,16 +159,9 @@ def filter_vehicle(
 ) -> FloatArray:
     """Return the estimates of the filter, for one gain sequence and both axes at once.
 
-    Parameters
-    ----------
-    z : array_like, shape (..., K, 4)
-        Measurements. Without noise, what comes out tells where the filter lags.
-    s : AutomotiveSettings, optional
-        Those of the data file if None; its number of samples is that of the measurements.
-
-    Returns
-    -------
-    ndarray, shape (..., K, 4)
+    z (..., K, 4): Measurements. Without noise, what comes out tells where the filter lags.
+    s: Those of the data file if None; its number of samples is that of the measurements.
+    Returns (..., K, 4)
 
     Examples
     --------
@@ -234,15 +187,9 @@ def filter_vehicle(
 def gain_sequence(s: AutomotiveSettings | None = None) -> FloatArray:
     """Return the gains of the filter for one axis.
 
-    Parameters
-    ----------
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (K, 2, 2)
-        They do not depend on the data. The first belongs to the start, and is the unit matrix.
+    s: Those of the data file if None.
+    Returns (K, 2, 2): They do not depend on the data. The first belongs to the start, and is the
+        unit matrix.
 
     Notes
     -----

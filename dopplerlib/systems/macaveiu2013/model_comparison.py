@@ -27,18 +27,10 @@ _TURN = 10 * KMH * (np.pi / 2) / 3  # m/s^2: acceleration of the hard turn
 def model_errors(runs: Runs, *, rng: np.random.Generator) -> dict[str, dict[str, FloatArray]]:
     """Return velocity errors of filters of several models, and of the smoother.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records of each path.
-    rng : numpy.random.Generator
-        Source of the measurement noise; all competitors see the same records.
-
-    Returns
-    -------
-    dict of str to dict of str to ndarray, shape (runs,)
-        Root mean square error in m/s by the case ("Fig 7", "Fig 10", "Fig 11", "in the turn",
-        "before it") and the competitor.
+    runs: Number of independent records of each path.
+    rng: Source of the measurement noise; all competitors see the same records.
+    Returns (runs,): Root mean square error in m/s by the case ("Fig 7", "Fig 10", "Fig 11", "in the
+        turn", "before it") and the competitor.
 
     Examples
     --------

@@ -25,16 +25,9 @@ def smooth_vehicle(
 ) -> tuple[FloatArray, FloatArray]:
     """Return estimates of the document's filter, and those of the smoother that follows it.
 
-    Parameters
-    ----------
-    z : array_like, shape (runs, K, 4)
-        Measurements [x, v_x, y, v_y].
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    filtered, smoothed : ndarray, shape (runs, K, 4)
+    z (runs, K, 4): Measurements [x, v_x, y, v_y].
+    s: Those of the data file if None.
+    Returns filtered, smoothed (runs, K, 4)
 
     Examples
     --------
@@ -56,21 +49,11 @@ def track_accelerating(
 ) -> FloatArray:
     """Return estimates of a filter of nearly constant acceleration.
 
-    Parameters
-    ----------
-    z : array_like, shape (runs, K, 4)
-        Measurements.
-    q : float
-        Spectral density of the jerk in m^2/s^5.
-    a_max : float
-        Standard deviation of the acceleration before it is known, in m/s^2.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (runs, K, 4)
-        Without the accelerations.
+    z (runs, K, 4): Measurements.
+    q: Spectral density of the jerk in m^2/s^5.
+    a_max: Standard deviation of the acceleration before it is known, in m/s^2.
+    s: Those of the data file if None.
+    Returns (runs, K, 4): Without the accelerations.
 
     Examples
     --------
@@ -95,22 +78,12 @@ def track_two_models(
 ) -> tuple[FloatArray, FloatArray]:
     """Return estimates of two interacting filters of constant velocity, a calm and an agile one.
 
-    Parameters
-    ----------
-    z : array_like, shape (runs, K, 4)
-        Measurements.
-    w : tuple of float
-        Velocity step of each model in m/s.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-    stay : float
-        Probability that a model stays for one step.
-
-    Returns
-    -------
-    x : ndarray, shape (runs, K, 4)
-    agile : ndarray, shape (runs, K)
-        Probability of the second model.
+    z (runs, K, 4): Measurements.
+    w: Velocity step of each model in m/s.
+    s: Those of the data file if None.
+    stay: Probability that a model stays for one step.
+    Returns x (runs, K, 4)
+        agile (runs, K): Probability of the second model.
 
     Examples
     --------
@@ -139,26 +112,12 @@ def rms_of_runs(
 ) -> FloatArray:
     """Return the root mean square error of each run.
 
-    Parameters
-    ----------
-    x : array_like, shape (runs, K, 4)
-        Estimates.
-    truth : array_like, shape (K, 4)
-        True states.
-    where : array_like of bool, shape (K,)
-        Samples that count.
-    component : {"position", "velocity"}
-        Which error.
-
-    Returns
-    -------
-    ndarray, shape (runs,)
-        In m or m/s.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or no sample counts.
+    x (runs, K, 4): Estimates.
+    truth (K, 4): True states.
+    where (K,): Samples that count.
+    component: Which error.
+    Returns (runs,): In m or m/s.
+    Raises ValueError if an argument is not of the kind described, or no sample counts.
 
     Examples
     --------

@@ -25,14 +25,8 @@ Record = Annotated[FloatArray, exactly(None, None, 3, check=_checks.bounded)]
 def polar_noise(sigma_phi: Positive | None = None) -> FloatArray:
     """Return the covariance of range, azimuth and range rate.
 
-    Parameters
-    ----------
-    sigma_phi : float, optional
-        Standard deviation of the azimuth in rad; that of the data file if None.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
+    sigma_phi: Standard deviation of the azimuth in rad; that of the data file if None.
+    Returns (3, 3)
 
     Examples
     --------
@@ -48,25 +42,12 @@ def polar_noise(sigma_phi: Positive | None = None) -> FloatArray:
 def measure_polar(truth: Truth, runs: Runs, *, rng: np.random.Generator) -> FloatArray:
     """Return polar measurements of a path, with noise.
 
-    Parameters
-    ----------
-    truth : array_like, shape (K, 4)
-        True states [x, v_x, y, v_y].
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of the noise.
-
-    Returns
-    -------
-    ndarray, shape (runs, K, 3)
-        Range in m, azimuth in rad, range rate in m/s.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, a target is on the radar, or the records would
-        have more than ten million samples.
+    truth (K, 4): True states [x, v_x, y, v_y].
+    runs: Number of independent records.
+    rng: Source of the noise.
+    Returns (runs, K, 3): Range in m, azimuth in rad, range rate in m/s.
+    Raises ValueError if an argument is not of the kind described, a target is on the radar, or the
+        records would have more than ten million samples.
 
     Examples
     --------
@@ -86,18 +67,10 @@ def start_polar(
 ) -> tuple[FloatArray, FloatArray]:
     """Return state and covariance from one polar measurement.
 
-    Parameters
-    ----------
-    z : array_like, shape (..., 3)
-        Range, azimuth and range rate.
-    R : array_like, shape (3, 3), optional
-        Covariance of the measurement; `polar_noise` if None.
-
-    Returns
-    -------
-    x : ndarray, shape (..., 4)
-        The velocity across the line of sight is zero, for lack of knowledge.
-    P : ndarray, shape (..., 4, 4)
+    z (..., 3): Range, azimuth and range rate.
+    R (3, 3): Covariance of the measurement; `polar_noise` if None.
+    Returns x (..., 4): The velocity across the line of sight is zero, for lack of knowledge.
+        P (..., 4, 4)
 
     Examples
     --------
@@ -131,21 +104,11 @@ def start_polar(
 def track_polar(z: Record, s: AutomotiveSettings | None = None) -> Track:
     """Track with range, azimuth and range rate as they are: an extended Kalman filter.
 
-    Parameters
-    ----------
-    z : array_like, shape (runs, K, 3)
-        Polar measurements; NaN where a scan has none, but for the first one, which is the start.
-    s : AutomotiveSettings, optional
-        Motion model; those of the data file if None.
-
-    Returns
-    -------
-    Track
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a first measurement is not finite.
+    z (runs, K, 3): Polar measurements; NaN where a scan has none, but for the first one, which is
+        the start.
+    s: Motion model; those of the data file if None.
+    Raises ValueError if an argument is not of the kind described, or a first measurement is not
+        finite.
 
     Examples
     --------
@@ -170,25 +133,13 @@ def track_polar_naive(
 ) -> Track:
     """Track with the range rate taken for the velocity: the filter of Eqs 4 to 6 fed by a radar.
 
-    Parameters
-    ----------
-    z : array_like, shape (runs, K, 3)
-        Polar measurements, none missing.
-    s : AutomotiveSettings, optional
-        Those of the data file if None.
-    covariance : {"as along", "document", "open"}
-        E_z: the polar noise at the place of the target, turned into x and y, with a velocity that
-        is as good across the line of sight as along it; the diagonal matrix of the document, that
-        of `s`; or the first one with a velocity that is open across the line of sight.
-
-    Returns
-    -------
-    Track
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a measurement is not finite.
+    z (runs, K, 3): Polar measurements, none missing.
+    s: Those of the data file if None.
+    covariance: E_z: the polar noise at the place of the target, turned into x and y, with a
+        velocity that is as good across the line of sight as along it; the diagonal matrix of the
+        document, that of `s`; or the first one with a velocity that is open across the line of
+        sight.
+    Raises ValueError if an argument is not of the kind described, or a measurement is not finite.
 
     Notes
     -----

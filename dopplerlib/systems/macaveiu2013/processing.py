@@ -42,12 +42,8 @@ MANAGER = TrackManager(hits=4, window=6, delete_after=13)  # half a second witho
 class VehicleScan:
     """Detections of one measurement.
 
-    Attributes
-    ----------
-    z : ndarray, shape (detections, 3)
-        Range in m, azimuth in rad, range rate in m/s.
-    source : ndarray of int, shape (detections,)
-        `TARGET`, `CLUTTER` or `FALSE`; known in a simulation only.
+    z (detections, 3): Range in m, azimuth in rad, range rate in m/s.
+    source (detections,): `TARGET`, `CLUTTER` or `FALSE`; known in a simulation only.
 
     Examples
     --------
@@ -73,23 +69,10 @@ def simulate_scans(
 ) -> list[VehicleScan]:
     """Return scans of a target with several reflection points among things that stand still.
 
-    Parameters
-    ----------
-    truth : array_like, shape (K, 4)
-        True states of the middle of the target.
-    rng : numpy.random.Generator
-        Source of all randomness.
-    points : int
-        Number of the reflection points. A target with one is at its middle: a pedestrian.
-
-    Returns
-    -------
-    list of VehicleScan
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a point is on the radar.
+    truth (K, 4): True states of the middle of the target.
+    rng: Source of all randomness.
+    points: Number of the reflection points. A target with one is at its middle: a pedestrian.
+    Raises ValueError if an argument is not of the kind described, or a point is on the radar.
 
     Examples
     --------
@@ -119,24 +102,13 @@ def simulate_scans(
 def reflection_points(truth: Truth, points: Count = POINTS) -> FloatArray:
     """Return the states of the points of the target that reflect.
 
-    Parameters
-    ----------
-    truth : array_like, shape (K, 4)
-        True states of its middle.
-    points : int
-        Their number.
-
-    Returns
-    -------
-    ndarray, shape (K, points, 4)
-        In a row of `LENGTH` along the heading; all have the velocity of the middle. A target that
-        stands heads where it moved last, or where it will move first; one that never moves, along
-        y.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or there are more than a hundred points.
+    truth (K, 4): True states of its middle.
+    points: Their number.
+    Returns (K, points, 4): In a row of `LENGTH` along the heading; all have the velocity of the
+        middle. A target that stands heads where it moved last, or where it will move first; one
+        that never moves, along y.
+    Raises ValueError if an argument is not of the kind described, or there are more than a hundred
+        points.
 
     Examples
     --------
@@ -166,17 +138,9 @@ def is_moving(
 ) -> BoolArray:
     """Return which detections move: the clutter rule.
 
-    Parameters
-    ----------
-    z : array_like, shape (..., 3)
-        Range in m, azimuth in rad, range rate in m/s.
-    limit : float, optional
-        Range rate in m/s below which a detection is clutter; one resolution cell if None.
-
-    Returns
-    -------
-    ndarray of bool, shape (...)
-        False for clutter.
+    z (..., 3): Range in m, azimuth in rad, range rate in m/s.
+    limit: Range rate in m/s below which a detection is clutter; one resolution cell if None.
+    Returns (...): False for clutter.
 
     Examples
     --------
@@ -190,17 +154,9 @@ def is_moving(
 def after_clutter_rule(scans: Iterable[VehicleScan], rule: Rule = "always") -> list[VehicleScan]:
     """Return the scans with the detections that are made into objects.
 
-    Parameters
-    ----------
-    scans : iterable of VehicleScan
-        From `simulate_scans`.
-    rule : {"always", "new tracks only", "never"}
-        See `track_objects`.
-
-    Returns
-    -------
-    list of VehicleScan
-        Without what stands still if the rule is for all detections; else as they are.
+    scans: From `simulate_scans`.
+    rule: See `track_objects`.
+    Returns: Without what stands still if the rule is for all detections; else as they are.
 
     Examples
     --------
@@ -221,19 +177,10 @@ def group_detections(
 ) -> tuple[FloatArray, IntArray]:
     """Return the objects that detections make up: the detection-to-object association.
 
-    Parameters
-    ----------
-    z : array_like, shape (detections, 3)
-        Detections.
-    box : tuple of float
-        Half-widths of the gate around an object in m, rad and m/s.
-
-    Returns
-    -------
-    mean : ndarray, shape (objects, 3)
-        Mean of the detections of each object.
-    member : ndarray of int, shape (detections,)
-        Object of each detection.
+    z (detections, 3): Detections.
+    box: Half-widths of the gate around an object in m, rad and m/s.
+    Returns mean (objects, 3): Mean of the detections of each object.
+        member (detections,): Object of each detection.
 
     Notes
     -----
@@ -267,22 +214,12 @@ def track_objects(
 ) -> list[ManagedTrack]:
     """Track through the whole scheme.
 
-    Parameters
-    ----------
-    scans : iterable of VehicleScan
-        From `simulate_scans`.
-    rule : {"always", "new tracks only", "never"}
-        Where the clutter rule is applied: to all detections, as in Fig 6; only until a track is
+    scans: From `simulate_scans`.
+    rule: Where the clutter rule is applied: to all detections, as in Fig 6; only until a track is
         confirmed; or nowhere.
-    assign : callable
-        See `track_scans`. The default is nearest neighbor.
-    manager : TrackManager
-        When a track is confirmed, and when deleted.
-
-    Returns
-    -------
-    list of ManagedTrack
-        Their filter is the extended one, on the polar measurements of the objects.
+    assign: See `track_scans`. The default is nearest neighbor.
+    manager: When a track is confirmed, and when deleted.
+    Returns: Their filter is the extended one, on the polar measurements of the objects.
 
     Notes
     -----
@@ -316,21 +253,10 @@ def track_objects(
 def hidden_scans(truth: Truth, limit: Positive | None = None) -> BoolArray:
     """Return whether the clutter rule deletes the target itself at each scan, without noise.
 
-    Parameters
-    ----------
-    truth : array_like, shape (K, 4)
-        True states.
-    limit : float, optional
-        See `is_moving`.
-
-    Returns
-    -------
-    ndarray of bool, shape (K,)
-
-    Raises
-    ------
-    ValueError
-        If `truth` is not of the kind described, or on the radar.
+    truth (K, 4): True states.
+    limit: See `is_moving`.
+    Returns (K,)
+    Raises ValueError if `truth` is not of the kind described, or on the radar.
 
     Examples
     --------
@@ -346,14 +272,8 @@ def longest_gap(
 ) -> IntArray:
     """Return the largest number of scans in a row without a detection.
 
-    Parameters
-    ----------
-    seen : array_like of bool, shape (runs, K)
-        Whether the target is detected in a scan.
-
-    Returns
-    -------
-    ndarray of int, shape (runs,)
+    seen (runs, K): Whether the target is detected in a scan.
+    Returns (runs,)
 
     Examples
     --------

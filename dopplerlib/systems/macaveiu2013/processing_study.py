@@ -59,25 +59,15 @@ ONLY = {
 class SchemeOutcome:
     """Outcome of the scheme for one record.
 
-    Attributes
-    ----------
-    held : int
-        Scans in which the target has a confirmed track, no farther from it than `NEAR`.
-    first : int
-        Number of the first of these scans; that of the scans if there is none.
-    breaks : int
-        How often the target lost its track, or the last of several.
-    tracks : int
-        Confirmed tracks of the target. A track is the target's if most of its detections are.
-    error : float
-        Root mean square distance in m of its oldest track from the middle of the target, in the
+    held: Scans in which the target has a confirmed track, no farther from it than `NEAR`.
+    first: Number of the first of these scans; that of the scans if there is none.
+    breaks: How often the target lost its track, or the last of several.
+    tracks: Confirmed tracks of the target. A track is the target's if most of its detections are.
+    error: Root mean square distance in m of its oldest track from the middle of the target, in the
         scans in which it is held. NaN if there are none.
-    false : int
-        Confirmed tracks that are not of the target.
-    false_scans : int
-        How many scans these were confirmed for, together.
-    begun : int
-        Tracks begun, most of which are never confirmed.
+    false: Confirmed tracks that are not of the target.
+    false_scans: How many scans these were confirmed for, together.
+    begun: Tracks begun, most of which are never confirmed.
     """
 
     held: Index
@@ -95,12 +85,8 @@ class SchemeOutcome:
 class DetectionCounts:
     """Numbers of detections in one record, and of those that the clutter rule deletes.
 
-    Attributes
-    ----------
-    target, target_deleted : int
-        Detections of the target.
-    clutter, clutter_deleted : int
-        Detections of what stands still.
+    target, target_deleted: Detections of the target.
+    clutter, clutter_deleted: Detections of what stands still.
     """
 
     target: Index
@@ -113,14 +99,7 @@ class DetectionCounts:
 def study_variants(figure: Figure) -> list[str]:
     """Return the names of the variants that are run on a path.
 
-    Parameters
-    ----------
-    figure : int
-        Number of the figure, 7 to 11.
-
-    Returns
-    -------
-    list of str
+    figure: Number of the figure, 7 to 11.
 
     Examples
     --------
@@ -134,18 +113,10 @@ def study_variants(figure: Figure) -> list[str]:
 def study_record(figure: Figure, run: Index, variant: Variant = "as in Fig 6") -> list[VehicleScan]:
     """Return the scans of one record of the study.
 
-    Parameters
-    ----------
-    figure : int
-        Number of the figure, 7 to 11.
-    run : int
-        Number of the run.
-    variant : str
-        One of `study_variants` of any figure. All that have the same target get the same scans.
-
-    Returns
-    -------
-    list of VehicleScan
+    figure: Number of the figure, 7 to 11.
+    run: Number of the run.
+    variant: One of `study_variants` of any figure. All that have the same target get the same
+        scans.
 
     Examples
     --------
@@ -163,24 +134,12 @@ def study_outcome(
 ) -> SchemeOutcome:
     """Process a record and return the outcome for the target.
 
-    Parameters
-    ----------
-    scans : iterable of VehicleScan
-        From `simulate_scans`.
-    truth : array_like, shape (K, 4)
-        True states of the target.
-    variant : str
-        See `study_variants`.
-
-    Returns
-    -------
-    SchemeOutcome
-        Its error is NaN where the target has no track.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or there is not one scan for each true state.
+    scans: From `simulate_scans`.
+    truth (K, 4): True states of the target.
+    variant: See `study_variants`.
+    Returns: Its error is NaN where the target has no track.
+    Raises ValueError if an argument is not of the kind described, or there is not one scan for each
+        true state.
 
     Examples
     --------
@@ -238,19 +197,8 @@ def _mostly(track, own):
 def count_detections(scans: Iterable[VehicleScan]) -> DetectionCounts:
     """Count the detections of a record, and those that the clutter rule deletes.
 
-    Parameters
-    ----------
-    scans : iterable of VehicleScan
-        From `simulate_scans`.
-
-    Returns
-    -------
-    DetectionCounts
-
-    Raises
-    ------
-    ValueError
-        If there is no scan.
+    scans: From `simulate_scans`.
+    Raises ValueError if there is no scan.
 
     Examples
     --------
@@ -275,25 +223,12 @@ def deleted_fraction(
 ) -> float:
     """Predict the fraction of the detections that the clutter rule deletes.
 
-    Parameters
-    ----------
-    truth : array_like, shape (K, 4), optional
-        True states of the middle of the target; if None, that of what stands still.
-    limit : float, optional
-        Range rate in m/s below which a detection is deleted; that of the data file if None.
-    sigma_rate : float, optional
-        Standard deviation of a measured range rate in m/s; that of the data file if None.
-
-    Returns
-    -------
-    float
-        Mean, over scans and reflection points, of the probability that the noise leaves the range
-        rate within the limit.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a point is on the radar.
+    truth (K, 4): True states of the middle of the target; if None, that of what stands still.
+    limit: Range rate in m/s below which a detection is deleted; that of the data file if None.
+    sigma_rate: Standard deviation of a measured range rate in m/s; that of the data file if None.
+    Returns: Mean, over scans and reflection points, of the probability that the noise leaves the
+        range rate within the limit.
+    Raises ValueError if an argument is not of the kind described, or a point is on the radar.
 
     Examples
     --------
@@ -314,11 +249,8 @@ def deleted_fraction(
 def saved_outcomes() -> dict[tuple[int, str], dict[str, FloatArray]]:
     """Return the saved outcomes of the study.
 
-    Returns
-    -------
-    dict of tuple (figure, variant) to dict of str to ndarray, shape (runs,)
-        For each attribute of `SchemeOutcome` its values in all runs, as floats; an error may be
-        NaN.
+    Returns (runs,): For each attribute of `SchemeOutcome` its values in all runs, as floats; an
+        error may be NaN.
 
     Examples
     --------
@@ -332,10 +264,8 @@ def saved_outcomes() -> dict[tuple[int, str], dict[str, FloatArray]]:
 def saved_detections() -> dict[int, dict[str, FloatArray]]:
     """Return the saved detection counts of the study.
 
-    Returns
-    -------
-    dict of int to dict of str to ndarray, shape (runs,)
-        For each figure and each attribute of `DetectionCounts` its values in all runs, as floats.
+    Returns (runs,): For each figure and each attribute of `DetectionCounts` its values in all runs,
+        as floats.
 
     Examples
     --------
@@ -350,23 +280,12 @@ def saved_detections() -> dict[int, dict[str, FloatArray]]:
 def outcome_summary(figure: Figure, variant: Variant) -> dict[str, np.ndarray]:
     """Return the columns of a table of the study, run by run.
 
-    Parameters
-    ----------
-    figure : int
-        Number of the figure, 7 to 11.
-    variant : str
-        One of `study_variants` of it.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (runs,)
-        Numbers, and booleans where the fraction of records is of interest. Errors are those of
-        the records in which the target was tracked at all.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the variant is none of the figure.
+    figure: Number of the figure, 7 to 11.
+    variant: One of `study_variants` of it.
+    Returns (runs,): Numbers, and booleans where the fraction of records is of interest. Errors are
+        those of the records in which the target was tracked at all.
+    Raises ValueError if an argument is not of the kind described, or the variant is none of the
+        figure.
 
     Examples
     --------

@@ -16,12 +16,9 @@ KMH = 1 / 3.6  # m/s
 class Reported:
     """All that the document states and a computer can use.
 
-    Attributes
-    ----------
-    scenario : Published
-        The five paths, sampling, radar, noise and filter; what the document leaves open is ours.
-    sources : dict of str to str
-        Where it stands, and how it was obtained.
+    scenario: The five paths, sampling, radar, noise and filter; what the document leaves open is
+        ours.
+    sources: Where it stands, and how it was obtained.
     """
 
     scenario: Published
@@ -31,10 +28,6 @@ class Reported:
 @cache
 def reported() -> Reported:
     """Return the values that the document states, and those filled in.
-
-    Returns
-    -------
-    Reported
 
     Examples
     --------

@@ -18,23 +18,14 @@ from .published import reported
 class AutomotiveSettings:
     """Sampling, noise and filter; our choice where the document states no value.
 
-    Attributes
-    ----------
-    T : float
-        Sampling interval in s.
-    samples : int
-        Number of samples K.
-    skip : int
-        Samples at the start that the scores leave out.
-    sigma_x, sigma_v : float
-        Standard deviation of a measured position in m and of a measured velocity in m/s, on each
-        axis.
-    w : float
-        Standard deviation of the velocity step that the filter assumes, on each axis, in m/s.
-    carrier, bandwidth : float
-        Of the radar, in Hz.
-    range_resolution : float
-        In m.
+    T: Sampling interval in s.
+    samples: Number of samples K.
+    skip: Samples at the start that the scores leave out.
+    sigma_x, sigma_v: Standard deviation of a measured position in m and of a measured velocity in
+        m/s, on each axis.
+    w: Standard deviation of the velocity step that the filter assumes, on each axis, in m/s.
+    carrier, bandwidth: Of the radar, in Hz.
+    range_resolution: In m.
 
     Examples
     --------
@@ -89,10 +80,6 @@ class AutomotiveSettings:
 @cache
 def automotive_settings() -> AutomotiveSettings:
     """Return the settings of the simulations.
-
-    Returns
-    -------
-    AutomotiveSettings
 
     Examples
     --------

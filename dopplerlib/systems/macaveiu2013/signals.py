@@ -23,18 +23,10 @@ def noisy_echoes(
 ) -> ComplexArray:
     """Return a signal with white complex noise.
 
-    Parameters
-    ----------
-    signal : array_like of complex, shape (...)
-        Sum of echoes, each of amplitude 1.
-    snr_db : float
-        Power of one echo over that of the noise, for each sample, in dB.
-    rng : numpy.random.Generator
-        Source of the noise.
-
-    Returns
-    -------
-    ndarray of complex, shape (...)
+    signal (...): Sum of echoes, each of amplitude 1.
+    snr_db: Power of one echo over that of the noise, for each sample, in dB.
+    rng: Source of the noise.
+    Returns (...)
 
     Examples
     --------

@@ -18,14 +18,10 @@ Truth = Annotated[FloatArray, exactly(None, 4)]  # states [x, v_x, y, v_y] at al
 class VehiclePath:
     """One true path.
 
-    Attributes
-    ----------
-    figure : int
-        Number of the document's figure; 0 for a path that is not in it.
-    title : str
-        What the target does.
-    truth : ndarray, shape (K, 4)
-        States [x, v_x, y, v_y] in m and m/s. The radar is at the origin and looks along +y.
+    figure: Number of the document's figure; 0 for a path that is not in it.
+    title: What the target does.
+    truth (K, 4): States [x, v_x, y, v_y] in m and m/s. The radar is at the origin and looks along
+        +y.
 
     Examples
     --------
@@ -40,10 +36,6 @@ class VehiclePath:
 
 def vehicle_paths() -> dict[int, VehiclePath]:
     """Return the five paths by the number of their figure.
-
-    Returns
-    -------
-    dict of int to VehiclePath
 
     Examples
     --------
@@ -77,16 +69,8 @@ def _axis(law):
 def hard_turn(duration: Positive | None = None) -> tuple[VehiclePath, BoolArray]:
     """Return a path that is not in the document: straight, a quarter of a circle, straight.
 
-    Parameters
-    ----------
-    duration : float, optional
-        Of the turn in s, up to the end of the record; that of the data file if None.
-
-    Returns
-    -------
-    VehiclePath
-    turning : ndarray of bool, shape (K,)
-        When the target turns.
+    duration: Of the turn in s, up to the end of the record; that of the data file if None.
+    Returns turning (K,): When the target turns.
 
     Examples
     --------

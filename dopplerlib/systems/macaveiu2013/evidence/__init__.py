@@ -13,20 +13,9 @@ __getattr__, __dir__ = attach(__name__, __path__)
 def evidence(*, rng: np.random.Generator) -> dict:
     """Return our number for every claim of ``claims.toml``.
 
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-        Source of all randomness.
-
-    Returns
-    -------
-    dict
-        As `judge_all` takes it.
-
-    Raises
-    ------
-    ValueError
-        If `rng` is not a generator.
+    rng: Source of all randomness.
+    Returns: As `judge_all` takes it.
+    Raises ValueError if `rng` is not a generator.
     """
     waves, filters, scheme = rng.spawn(3)
     return {**_waveforms.found(waves), **_filter.found(filters), **_scheme.found(scheme)}
