@@ -117,8 +117,8 @@ def _documented(hint):
             return "array_like or others"
         named = " or ".join(_documented(part) for part in parts if part is not NoneType)
         return named + ", optional" * (NoneType in parts)
-    if kind is Literal:
-        return "{...}"
+    if kind is Literal:  # a number among several may be followed by another one of them
+        return "{...}" if isinstance(get_args(hint)[0], str) else "int"
     if kind is np.ndarray:
         text = str(hint)
         return "array_like" + " of bool" * ("bool" in text) + " of complex" * ("complex" in text)
