@@ -50,14 +50,14 @@ def records(
 
 @drawing(5.0, 4.6)
 def positions(figure: Figure, truth: Array, raw: Array, estimate: Array, sensors: Array) -> None:
-    """Draw triangulated positions in the plane (Fig 6.4(c)).
+    """Draw bilaterated positions in the plane (Fig 6.4(c)).
 
     truth, raw, estimate (K, 2): Positions in m.
     sensors (2, 2): Positions of the radars in m.
     """
     ax = figure.subplots()
-    ax.plot(*raw.T, "o", mfc="none", mec=MEASURED, ms=5, label="detections, triangulated")
-    ax.plot(*estimate.T, "+", color=OURS, ms=7, mew=1.5, label="filtered, triangulated")
+    ax.plot(*raw.T, "o", mfc="none", mec=MEASURED, ms=5, label="detections, bilaterated")
+    ax.plot(*estimate.T, "+", color=OURS, ms=7, mew=1.5, label="filtered, bilaterated")
     ax.plot(*truth.T, color=TRUTH, ls="--", label="true")
     ax.plot(*sensors.T, "o", color=SENSOR, ms=7)
     ax.set(title=f"{_LABEL}: position from both radars", xlabel="x (m)", ylabel="y (m)")

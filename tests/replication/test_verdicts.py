@@ -340,6 +340,7 @@ def test_what_is_no_claim_is_refused(claim):
 
 
 def test_claims_may_come_from_an_iterator():
-    claim = next(c for c in CLAIMS if c.form == "number" and np.ndim(c.published) == 0)
+    alone = (c for c in CLAIMS if c.form == "number" and not c.choices)
+    claim = next(c for c in alone if np.ndim(c.published) == 0)
     evidence = {claim.id: claim.published}
     assert judge_all(iter([claim]), evidence) == judge_all([claim], evidence)

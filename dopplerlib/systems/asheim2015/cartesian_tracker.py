@@ -108,6 +108,7 @@ def table_3_2(
     records: RadarRecords,
     *,
     Q: Annotated[FloatArray, exactly(4, 4)] | None = None,
+    sigma_angle: Positive | None = None,
     start: PlaneStates | None = None,
 ) -> PositionTrack:
     """Run the extended Kalman filter of Table 3.2 on bilaterated ranges and angles (Fig 3.5).
@@ -118,6 +119,8 @@ def table_3_2(
         What both radars measured.
     Q : array_like, shape (4, 4), optional
         Covariance of the process noise; that of the scenario if None.
+    sigma_angle : float, optional
+        Standard deviation of the angle in rad; that of the scenario if None.
     start : array_like, shape (..., 4), optional
         State at the first scan; the first bilaterated position at rest if None.
 
@@ -141,7 +144,7 @@ def table_3_2(
     """
     c = reported().scenario.cartesian
     Q = np.diag(c.Q_diagonal) if Q is None else Q
-    R = np.diag([c.sigma_range, c.sigma_angle]) ** 2
+    R = np.diag([c.sigma_range, c.sigma_angle if sigma_angle is None else sigma_angle]) ** 2
     x_tri, y_tri, valid = bilaterate(records.z[:, 0, :, 0], records.z[:, 1, :, 0], records.baseline)
     measured = np.stack([np.hypot(x_tri, y_tri), np.arctan2(y_tri, x_tri)], axis=-1)
     if start is None:

@@ -160,11 +160,11 @@ def baseline_sweep(
     --------
     >>> found = baseline_sweep([0.6], 2, rng=np.random.default_rng(1), at=5.0)
     >>> list(found)
-    ['filter then triangulate', 'one filter for both']
+    ['filter then bilaterate', 'one filter for both']
     """
     T = reported().scenario.real.T
     own = filter_settings("modern", T)
-    found = {"filter then triangulate": [], "one filter for both": []}
+    found = {"filter then bilaterate": [], "one filter for both": []}
     for baseline, child in zip(baselines, rng.spawn(len(baselines)), strict=True):
         records = simulate_radars(
             runs, rng=child, T=T, duration=at + half_width, baseline=float(baseline), rate="exact"

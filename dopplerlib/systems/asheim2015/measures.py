@@ -14,7 +14,7 @@ Times = Annotated[FloatArray, exactly(None)]  # of scans; distances at them
 Errors = Annotated[FloatArray, exactly(None, None, check=_checks.bounded)]
 
 # A position is of use as long as its root mean square error, averaged over a second, is below a
-# meter. The first seconds do not count: there the filter settles.
+# meter, unless a caller says otherwise. The first seconds do not count: there the filter settles.
 LIMIT, AFTER, WINDOW = 1.0, 5.0, 1.0  # m, s, s
 
 
@@ -186,8 +186,10 @@ def usable_range(
     error: Annotated[FloatArray, shaped(None, None, check=_checks.bounded)],
     time: Times,
     distance: Times,
+    limit: Positive = LIMIT,
+    average: Positive = WINDOW,
 ) -> FloatArray:
-    """Return the distance from the origin at which the error of all runs exceeds a meter.
+    """Return the distance from the origin at which the error of all runs exceeds a limit.
 
     Parameters
     ----------
@@ -197,6 +199,10 @@ def usable_range(
         Time of each scan in s.
     distance : array_like, shape (K,)
         True distance from the origin in m.
+    limit : float
+        Error in m up to which a position is of use.
+    average : float
+        Time in s over which errors are averaged.
 
     Returns
     -------
@@ -219,7 +225,7 @@ def usable_range(
     if not error.shape[-2]:
         raise ValueError(f"error must have a run, got shape {error.shape}")
     squares, there = (part.mean(axis=-2) for part in _squares(error))
-    return _first_above(squares, there, time, distance)
+    return _first_above(squares, there, time, distance, limit, average)
 
 
 @checked
@@ -254,7 +260,14 @@ def usable_interval(
 
 @checked
 def usable_ratio(
-    a: Errors, b: Errors, time: Times, distance: Times, *, rng: np.random.Generator
+    a: Errors,
+    b: Errors,
+    time: Times,
+    distance: Times,
+    limit: Positive = LIMIT,
+    average: Positive = WINDOW,
+    *,
+    rng: np.random.Generator,
 ) -> ConfidenceInterval:
     """Return the usable range of one tracker over that of another on the same runs.
 
@@ -262,7 +275,7 @@ def usable_ratio(
     ----------
     a, b : array_like, shape (runs, K)
         Errors of both in m.
-    time, distance
+    time, distance, limit, average
         See `usable_range`.
     rng : numpy.random.Generator
         Source of the draws, in which both keep their runs together.
@@ -288,7 +301,8 @@ def usable_ratio(
         raise ValueError(f"b must have the shape {a.shape} of a, got {b.shape}")
 
     def reach(squares, there):
-        return np.minimum(_first_above(squares, there, time, distance), distance[-1])
+        first = _first_above(squares, there, time, distance, limit, average)
+        return np.minimum(first, distance[-1])
 
     def ratio(a, some_a, b, some_b):
         return reach(a, some_a) / reach(b, some_b)
@@ -318,15 +332,19 @@ def _squares(error):
     return np.where(there, error, 0.0) ** 2, there.astype(float)
 
 
-def _first_above(squares, there, time, distance):
+def _first_above(squares, there, time, distance, limit=LIMIT, average=WINDOW):
     """Return the distance at which root mean squares (..., K) are first above the limit."""
     # A scan without any estimate counts as unusable.
     mean = np.divide(squares, there, out=np.full(np.shape(squares), np.inf), where=there > 0)
     curve = np.sqrt(mean)
-    scans = max(1, round(WINDOW / (time[1] - time[0])))
+    scans = max(1, round(average / (time[1] - time[0])))
     # The average is over those of the scans around that are there: at the ends there are fewer.
     before, behind = scans // 2, (scans - 1) // 2
-    smooth = np.stack([curve[..., max(0, k - before) : k + behind + 1].mean(axis=-1)
-                       for k in range(len(time))], axis=-1)  # fmt: skip
-    above = (smooth > LIMIT) & (time >= AFTER)
+    K, smooth = curve.shape[-1], np.empty_like(curve)
+    for k in (*range(min(before, K)), *range(max(before, K - behind), K)):
+        smooth[..., k] = curve[..., max(0, k - before) : k + behind + 1].mean(axis=-1)
+    if scans <= K:
+        windows = np.lib.stride_tricks.sliding_window_view(curve, scans, axis=-1)
+        smooth[..., before : K - behind] = windows.mean(axis=-1)
+    above = (smooth > limit) & (time >= AFTER)
     return np.where(above.any(axis=-1), distance[np.argmax(above, axis=-1)], np.inf)

@@ -176,15 +176,18 @@ def straight_track(time: Times) -> FloatArray:
 
 
 @checked
-def maneuver_track(time: Times) -> FloatArray:
+def maneuver_track(time: Times, turn: tuple[Real, Real] | None = None) -> FloatArray:
     """Return the states on the track with a turn of 120 degrees, Fig 5.1(b).
 
-    The turn has a constant rate and is counter-clockwise, as the code has it.
+    Of the code only the parameters are in our text: a counter-clockwise turn between 10 and 20 s.
+    That its rate is constant is an inference.
 
     Parameters
     ----------
     time : array_like, shape (K,)
         Times in s.
+    turn : tuple of float, optional
+        When the turn begins and ends in s; the parameters of the code if None.
 
     Returns
     -------
@@ -193,7 +196,7 @@ def maneuver_track(time: Times) -> FloatArray:
     Raises
     ------
     ValueError
-        If a time is not finite or beyond 1e60.
+        If a time is not finite or beyond 1e60, or the turn does not begin before it ends.
 
     Examples
     --------
@@ -203,7 +206,9 @@ def maneuver_track(time: Times) -> FloatArray:
     t, s = time, reported().scenario.tracks
     v = s.velocity
     speed, heading = np.hypot(*v), np.arctan2(v[1], v[0])
-    begin, end = s.turn_start, s.turn_stop
+    begin, end = (s.turn_start, s.turn_stop) if turn is None else turn
+    if not 0 <= begin < end:
+        raise ValueError(f"turn must begin at 0 or later and before it ends, got {turn}")
     rate = np.deg2rad(s.turn) / (end - begin)
     inside = np.clip(t - begin, 0, end - begin)
     angle = heading + rate * inside

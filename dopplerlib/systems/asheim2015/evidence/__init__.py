@@ -5,13 +5,13 @@ import numpy as np
 from ...._hints import Runs, checked
 from ...._lazy import attach
 from ..scene import simulate_radars
-from . import _formulas, _positions, _ranges, _surrogate
+from . import _formulas, _positions, _ranges, _steps, _surrogate
 
 __getattr__, __dir__ = attach(__name__, __path__)
 
 
 @checked
-def evidence(*, rng: np.random.Generator, runs: Runs = 400) -> dict:
+def evidence(*, rng: np.random.Generator, runs: Runs = 600) -> dict:
     """Return our numbers for every claim.
 
     Parameters
@@ -26,12 +26,13 @@ def evidence(*, rng: np.random.Generator, runs: Runs = 400) -> dict:
     dict
         Evidence by the id of the claim; that on Chapter 6 is what SIMULATED walks say.
     """
-    simulated, resampled, walking = rng.spawn(3)
+    simulated, ranges, positions, steps, walking = rng.spawn(5)
     records = simulate_radars(runs, rng=simulated, duration=_ranges.LONG)
-    tracks = _ranges.filtered(records)
+    tracks = _ranges.filtered(records, max(1, runs // 3))
     return {
         **_formulas.settings_and_formulas(),
-        **_ranges.found(records, tracks, resampled),
-        **_positions.found(records, tracks, resampled),
-        **_surrogate.found(2 * runs, walking),
+        **_ranges.found(records, tracks, ranges),
+        **_positions.found(records, tracks, positions),
+        **_steps.found(records, tracks, runs, steps),
+        **_surrogate.found(records, tracks, 2 * runs, walking),
     }

@@ -2,69 +2,91 @@
 
 import numpy as np
 
-from ....replication.evidence import Draws, Readings
+from ....replication.evidence import Draws, sweep
 from ..measures import position_errors, usable_range, usable_ratio
 from ..position_tracker import clipped_bilateration
 from ..published import reported
-from ._ranges import error_ratio
+from ._ratios import choices, ratio, within
 
 
 def found(records, tracks, rng):
     """Return the evidence by the id of the claim; `tracks` are those of `_ranges.filtered`."""
     records = records.until(reported().scenario.tracks.duration)
     t, truth, d = records.time, records.truth, records.distance
+    K = len(t)
 
-    def position_error(d1, d2):
-        p, _ = clipped_bilateration(d1[:, : len(t)], d2[:, : len(t)], records.baseline)
-        return position_errors(p, truth[: p.shape[1]]), p
+    def bilaterated(ranges):
+        p, _ = clipped_bilateration(ranges[:, 0, :K], ranges[:, 1, :K], records.baseline)
+        return p
 
-    errors = {name: position_error(*np.moveaxis(track.x[..., 0], 1, 0))[0]
-              for name, track in tracks.items()}  # fmt: skip
-    errors["measured"], raw = position_error(*np.moveaxis(records.z[..., 0], 1, 0))
-    inside = tracks["code"].updated[:, :, : len(t)].all(axis=1)
-    errors["inside the gate"] = np.where(inside, errors["measured"], np.nan)
-    single = tracks["code"].x[:, 0, : len(t), 0] - records.ranges[0, :, 0]
-    at = int(np.argmin(np.hypot(*(truth[:, :2] - reported().quoted.range.compared).T)))
+    raw = bilaterated(records.z[..., 0])
+    errors = {key: position_errors(bilaterated(track.x[..., 0]), truth)
+              for key, track in tracks.items()}  # fmt: skip
+    errors["measured"] = position_errors(raw, truth)
+    paths = {"measured": errors["measured"], "estimated": errors["code", "box", True]}
 
-    def of_each(name, low, high, value="root mean square"):
-        # From here to there, seen from the origin.
-        some = errors[name][:, (d >= low) & (d <= high)]
-        largest = value == "largest"
-        return Draws(some.max(axis=1) if largest else np.sqrt(np.mean(some**2, axis=1)))
+    def off(error, at, read_off):
+        some = error[:, at]
+        root = read_off == "root mean square"
+        return Draws(np.sqrt(np.mean(some**2, axis=1)) if root else some.max(axis=1))
 
-    def ratio(a, b, low, high):
-        return error_ratio(errors[a], errors[b], t, low, high, rng)
+    def useful(settings, accuracy, average):
+        each = errors[settings, "box", True][:, None]
+        return Draws(np.minimum(usable_range(each, t, d, accuracy, average), d[-1]))
+
+    def reach(child, settings, accuracy, average):
+        estimated = errors[settings, "box", True]
+        single = tracks[settings, "box", True].x[:, 0, :K, 0] - records.ranges[0, :, 0]
+        modern = errors["modern", "nis", True]
+
+        few = len(modern)
+
+        def over(a, b):
+            return usable_ratio(a[:few], b[:few], t, d, accuracy, average, rng=child)
+
+        return {
+            "raw-range": over(errors["measured"], estimated),
+            "fusion-shortens": over(estimated, single),
+            "tweaked": over(modern, estimated),
+        }
+
+    def late(child, settings, end, metric):
+        at = within(t, end)
+        gated, free = (errors[settings, gate, True][:, at] for gate in ("box", "none"))
+        measured = errors["measured"][:, at]
+        passed = tracks[settings, "box", True].updated[:, :, :K].all(axis=1)[:, at]
+        inside = np.where(passed, measured, np.nan)
+        return {
+            "gate-triangulation": ratio(free, gated, metric, child),
+            "gate-measurements": ratio(measured, inside, metric, child),
+        }
+
+    def rate(child, settings, gate, part, metric):
+        at = within(t, part)
+        return ratio(*(errors[settings, gate, doppler][:, at] for doppler in (True, False)),
+                     metric, child)  # fmt: skip
+
+    def compared(half, read_off):
+        x = np.abs(raw[..., 0] - truth[:, 0])
+        return off(
+            x, np.hypot(*(truth[:, :2] - reported().quoted.range.compared).T) <= half, read_off
+        )
 
     return {
-        "useful-range": Draws(np.minimum(usable_range(errors["code"][:, None], t, d), d[-1])),
-        "raw-range": usable_ratio(errors["measured"], errors["code"], t, d, rng=rng),
-        "fusion-shortens": usable_ratio(errors["code"], single, t, d, rng=rng),
-        "raw-at-four": Draws(np.abs(raw[:, at, 0] - truth[at, 0])),
-        "raw-near-simulated": Readings(
-            {
-                f"{value} from 2 to 3 m": of_each("measured", 2, 3, value)
-                for value in ("root mean square", "largest")
-            }
+        "useful-range": sweep(choices("settings", "accuracy", "average"), useful),
+        **sweep(choices("settings", "accuracy", "average"), reach, rng),
+        **sweep(choices("settings", "end", "metric"), late, rng),
+        "doppler-position": sweep(choices("settings", "gate", "part", "metric"), rate, rng),
+        "raw-at-four": sweep(choices("at-four", "read-off"), compared),
+        "raw-near-simulated": sweep(
+            choices("read-off"), lambda how: off(paths["measured"], within(d, "2 to 3 m"), how)
         ),
-        "raw-beyond-four": Readings(
-            {
-                f"{name}, {low} to {high} m": of_each(track, low, high)
-                for name, track, low, high in (
-                    ("measured", "measured", 4.4, 4.7),
-                    ("measured", "measured", 5, 5.66),
-                    ("estimated", "code", 4.4, 4.7),
-                )
-            }
+        "raw-beyond-four": sweep(
+            choices("path", "beyond-four", "read-off"),
+            lambda path, window, how: off(paths[path], within(d, window), how),
         ),
-        "error-at-four-simulated": Readings(
-            {
-                name: of_each(track, 3.9, 4.1)
-                for name, track in (("measured", "measured"), ("estimated", "code"))
-            }
+        "error-at-four-simulated": sweep(
+            choices("path", "at-four", "read-off"),
+            lambda path, half, how: off(paths[path], np.abs(d - 4) <= half, how),
         ),
-        "tweaked": usable_ratio(errors["modern"], errors["code"], t, d, rng=rng),
-        "gate-triangulation": ratio("code, no gate", "code", 44, 46),
-        "gate-triangulation-text": ratio("text, no gate", "text", 44, 46),
-        "gate-measurements": ratio("measured", "inside the gate", 44, 46),
-        "doppler-position": ratio("code", "code, no rate", 25, 40),
     }

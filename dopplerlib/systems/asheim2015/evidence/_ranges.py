@@ -1,77 +1,134 @@
 """Evidence on the path of a single radar."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ....estimation import gaussian, recursion
 from ....estimation.linear_kalman import kf
 from ....estimation.radial_velocity import radial_velocity_update
+from ....evaluation.intervals import quantile_interval
 from ....model.motion import ncv_transition
-from ....replication.evidence import Draws, Readings
-from ..measures import departure_times, rmse_ratio
+from ....replication.evidence import Draws, sweep
+from ..cartesian_tracker import table_3_2
+from ..measures import departure_times
+from ..position_tracker import clipped_bilateration
 from ..published import reported
 from ..range_tracker import track_ranges
 from ..settings import filter_settings
+from ._ratios import choices, ratio, within
 
 LONG = 60.0  # s: a record long enough for every track of the fixed gate to be left
 
 
-def filtered(records):
-    """Return the RangeTrack of both radars by settings, as long as claims look at it."""
+def filtered(records, few):
+    """Return the RangeTrack of both radars by settings, gate, and whether the rate is used.
 
-    def run(name, end, gate="own", **options):
-        own = filter_settings(name, gate=gate)
-        return track_ranges(records.until(end).z[..., None, :], own, **options)
+    Those of which single runs are looked at have all records, others the first `few`.
+    """
+    all_z = records.z[..., None, :]
 
-    return {
-        "code": run("code", LONG),
-        "code, no gate": run("code", LONG, gate=None),
-        "code, no rate": run("code", 40.0, doppler=False),
-        "text": run("text", 46.0),
-        "text, no gate": run("text", 46.0, gate=None),
-        "text, no rate": run("text", 40.0, doppler=False),
-        "modern": run("modern", reported().scenario.tracks.duration),
-    }
+    def run(own, z=all_z[:few], doppler=True):
+        return track_ranges(z, own, doppler=doppler)
 
-
-def error_ratio(a, b, time, low, high, rng):
-    """Return the error of one tracker over that of another from one time to another."""
-    # All begin at the first scan; some end sooner.
-    K, middle = min(a.shape[-1], b.shape[-1]), (low + high) / 2
-    return rmse_ratio(a[:, :K], b[:, :K], time[:K], middle, middle - low, rng=rng)
+    found = {("modern", "nis", True): run(filter_settings("modern"))}
+    for name in ("code", "text"):
+        own, free = (filter_settings(name, gate=gate) for gate in ("box", None))
+        loose = replace(own, box=[own.box[0], 1e6])
+        found |= {
+            (name, "box", True): run(own, all_z),
+            (name, "box", False): run(own, doppler=False),
+            (name, "none", True): run(free),
+            (name, "none", False): run(free, doppler=False),
+            (name, "box of ranges", True): run(loose),
+        }
+    return found
 
 
 def found(records, tracks, rng):
     """Return the evidence by the id of the claim; `tracks` are those of `filtered`."""
     t, truth = records.time, records.ranges[..., 0]
-    errors = {name: track.x[..., 0] - truth[:, : track.x.shape[2]]
-              for name, track in tracks.items()}  # fmt: skip
+    errors = {key: track.x[..., 0] - truth for key, track in tracks.items()}
     errors["measured"] = records.z[..., 0] - truth
 
-    def ratio(a, b, low, high, radar):
-        return error_ratio(errors[a][:, radar], errors[b][:, radar], t, low, high, rng)
+    def compared(child, a, b, window, metric, radar):
+        at = within(t, window)
+        return ratio(errors[a][:, radar][:, at], errors[b][:, radar][:, at], metric, child)
 
-    def windows(a, b, radar, *parts):
-        return Readings(
-            {f"{low} to {high} s": ratio(a, b, low, high, radar) for low, high in parts}
+    def rate(child, settings, gate, part, metric):
+        keys = [(settings, gate, doppler) for doppler in (True, False)]
+        return {
+            "kf-improves": compared(child, keys[1], "measured", part, metric, 0),
+            "doppler-R1": compared(child, *keys, part, metric, 0),
+            "doppler-R2": compared(child, *keys, part, metric, 1),
+        }
+
+    def near(child, settings, zoom, metric):
+        key = settings, "box", True
+        return {
+            f"good-snr-R{n + 1}": compared(child, key, "measured", zoom, metric, n)
+            for n in range(2)
+        }
+
+    def late(child, settings, end, metric):
+        gated, free, loose = ((settings, gate, True) for gate in ("box", "none", "box of ranges"))
+        return {
+            "follows-R1": compared(child, free, gated, end, metric, 0),
+            "follows-R2": compared(child, free, gated, end, metric, 1),
+            "gate-both": compared(child, gated, loose, end, metric, 0),
+        }
+
+    def coasting(child, settings, metric):
+        off = errors[settings, "box", True][:, 0]
+        return ratio(
+            off[:, within(t, "49 to 50 s")], off[:, within(t, "47 to 48 s")], metric, child
         )
 
-    times = departure_times(tracks["code"].updated, t)
-    plain = ("code", "text")
     return {
-        "kf-improves": Readings(
-            {name: ratio(f"{name}, no rate", "measured", 20, 30, 0) for name in plain}
-        ),
-        "doppler-R1": windows("code", "code, no rate", 0, (4, 12), (15, 40)),
-        "doppler-R2": windows("code", "code, no rate", 1, (4, 12), (15, 40)),
-        "R1-departs": Draws(times[:, 0]),
-        "R1-in-range": Draws(times[:, 0]),
-        "R2-departs": Draws(times[:, 1]),
-        "good-snr-R1": windows("code", "measured", 0, (0, 7), (10, 20)),
-        "good-snr-R2": windows("code", "measured", 1, (0, 7), (10, 20)),
-        "follows-R1": ratio("code, no gate", "code", 49, 50, 0),
-        "follows-R2": ratio("code, no gate", "code", 49, 50, 1),
-        "ekf-needed": _largest_step_difference(records.z[0, 0, :300], filter_settings("code")),
+        **sweep(choices("settings", "gate", "part", "metric"), rate, rng),
+        **sweep(choices("settings", "zoom", "metric"), near, rng),
+        **sweep(choices("settings", "end", "metric"), late, rng),
+        "coasting-grows": sweep(choices("settings", "metric"), coasting, rng),
+        **departures(records, tracks),
+        "ekf-needed": sweep(choices("system"), lambda system: _largest_difference(records, system)),
     }
+
+
+def departures(records, tracks):
+    """Return the evidence on the times at which tracks are left."""
+
+    def left(settings, misses, length):
+        track, K = tracks[settings, "box", True], len(records.until(length).time)
+        times = departure_times(track.updated[..., :K], records.time[:K], int(misses))
+        return np.minimum(times, length).T  # one that is not left counts as left at the end
+
+    def of_each(settings, misses, length):
+        first, second = left(settings, misses, length)
+        tells = np.minimum(first, second) < length  # a run that leaves neither does not
+        return {
+            "R1-departs": Draws(first),
+            "R2-departs": Draws(second),
+            "R2-longer": quantile_interval((second - first)[tells]),
+        }
+
+    return sweep(choices("settings", "misses", "record"), of_each)
+
+
+def _largest_difference(records, system):
+    """Return the largest difference of a nonlinear filter from the linear one, in m or m/s."""
+    own, s = filter_settings("code"), reported().scenario.cartesian
+    if system == "one for each radar":
+        return _largest_step_difference(records.z[0, 0, :300], own)
+    some = records.first(1).until(30.0)
+    p, _ = clipped_bilateration(some.z[:, 0, :, 0], some.z[:, 1, :, 0], some.baseline)
+    start = np.array([*p[0, 0], 0.0, 0.0])
+    start[1] = max(start[1], s.start_y)
+    Q, P0 = np.diag(s.Q_diagonal), s.start_covariance * np.eye(4)
+    F = ncv_transition(own.T, dim=2, order="derivative")
+    R = s.sigma_range**2 * np.eye(2)
+    linear = kf(p[0, 1:], F, Q, np.eye(4)[:2], R, start, P0)
+    extended = table_3_2(some, Q=Q, start=start)
+    return float(np.abs(extended.x[0, 1:, :2] - linear.x[:, :2]).max())
 
 
 def _largest_step_difference(z, own):
