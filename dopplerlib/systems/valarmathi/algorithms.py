@@ -36,22 +36,13 @@ Phase = Literal["all", "maneuver", "steady", "constant"]
 class AlgorithmRuns:
     """Runs of all algorithms on the same samples of two sensors.
 
-    Attributes
-    ----------
-    path : VelocityPath
-        The truth.
-    snr_db : float
-        Signal-to-noise ratio of a sample in dB.
-    doppler : FilteredDoppler
-        Measurements of both sensors.
-    fixed : VelocityTrack
-        Filters with one window: algorithms 1 and 3.
-    own : VelocityTrack
-        Filters that choose their windows by themselves: 2 and 4.
-    shared : VelocityTrack
-        Filters that choose by the fused state: 5.
-    delayed : VelocityTrack
-        Filters with one window that know its delay: 6.
+    path: The truth.
+    snr_db: Signal-to-noise ratio of a sample in dB.
+    doppler: Measurements of both sensors.
+    fixed: Filters with one window: algorithms 1 and 3.
+    own: Filters that choose their windows by themselves: 2 and 4.
+    shared: Filters that choose by the fused state: 5.
+    delayed: Filters with one window that know its delay: 6.
     """
 
     path: VelocityPath
@@ -136,23 +127,12 @@ def run_algorithms(
 ) -> AlgorithmRuns:
     """Run all algorithms on the same samples.
 
-    Parameters
-    ----------
-    name : {"path 1", "path 2", "fighter"}
-        See `velocity_path`.
-    snr_db : float
-        Signal-to-noise ratio of a sample in dB, the same for both sensors.
-    runs : int
-        Number of independent records.
-    table : WindowTable
-        For the choice of windows.
-    rng : numpy.random.Generator
-        Source of randomness; every run has a child of its own, so that the first runs are the
-        same however many follow.
-
-    Returns
-    -------
-    AlgorithmRuns
+    name: See `velocity_path`.
+    snr_db: Signal-to-noise ratio of a sample in dB, the same for both sensors.
+    runs: Number of independent records.
+    table: For the choice of windows.
+    rng: Source of randomness; every run has a child of its own, so that the first runs are the same
+        however many follow.
 
     Examples
     --------
@@ -184,14 +164,7 @@ def run_algorithms(
 def operations(algorithm: Number) -> int:
     """Return the real additions and multiplications of an algorithm for each sample.
 
-    Parameters
-    ----------
-    algorithm : int
-        From 1 to 6.
-
-    Returns
-    -------
-    int
+    algorithm: From 1 to 6.
 
     Notes
     -----

@@ -18,24 +18,14 @@ def run_measures(
 ) -> dict[str, FloatArray]:
     """Return the measures of every run.
 
-    Parameters
-    ----------
-    path : VelocityPath
-        The truth.
-    velocity : array_like, shape (runs, K)
-        Estimates in m/s at the last K samples of the path; all that are scored among them.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (runs,)
-        Root mean square errors in m/s of the "whole" record, of the "maneuver" and at "constant"
-        velocity; the document's "cee" of the record in percent; the "delay" in a steady maneuver in
-        ms; and the fraction of the squared error there that this delay explains, "late".
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described.
+    path: The truth.
+    velocity (runs, K): Estimates in m/s at the last K samples of the path; all that are scored
+        among them.
+    Returns (runs,): Root mean square errors in m/s of the "whole" record, of the "maneuver" and at
+        "constant" velocity; the document's "cee" of the record in percent; the "delay" in a steady
+        maneuver in ms; and the fraction of the squared error there that this delay explains,
+        "late".
+    Raises ValueError if an argument is not of the kind described.
 
     Notes
     -----

@@ -33,14 +33,9 @@ Decibels = Annotated[float, _decibels]
 class FusedTrack:
     """Estimates by one way of fusing two sensors.
 
-    Attributes
-    ----------
-    x : ndarray, shape (runs, K, 2)
-        Velocity and acceleration in m/s and m/s^2.
-    P : ndarray, shape (1, K, 2, 2)
-        Their covariances, which are the same for all runs.
-    sample : ndarray of int, shape (K,)
-        Numbers of the samples that they belong to.
+    x (runs, K, 2): Velocity and acceleration in m/s and m/s^2.
+    P (1, K, 2, 2): Their covariances, which are the same for all runs.
+    sample (K,): Numbers of the samples that they belong to.
 
     Examples
     --------
@@ -64,19 +59,10 @@ class FusedTrack:
 def merged_doppler(doppler: FilteredDoppler, snr_db: Decibels) -> tuple[FilteredDoppler, float]:
     """Return the measurements of two equally good sensors fused into those of one.
 
-    Parameters
-    ----------
-    doppler : FilteredDoppler
-        ``v`` of shape (W, runs, 2, K).
-    snr_db : float
-        Signal-to-noise ratio of both.
-
-    Returns
-    -------
-    FilteredDoppler
-        One sensor.
-    variance_ratio : float
-        Variance of its measurements over that of one of the two.
+    doppler: ``v`` of shape (W, runs, 2, K).
+    snr_db: Signal-to-noise ratio of both.
+    Returns: One sensor.
+        variance_ratio: Variance of its measurements over that of one of the two.
 
     Examples
     --------
@@ -99,19 +85,10 @@ def fuse_all(
 ) -> dict[str, FusedTrack]:
     """Fuse two sensors with a fixed window, in every way.
 
-    Parameters
-    ----------
-    doppler : FilteredDoppler
-        Measurements, ``v`` of shape (W, runs, 2, K).
-    snr_db : float
-        Signal-to-noise ratio of both.
-    delayed, hop
-        See `filter_velocity`.
-
-    Returns
-    -------
-    dict of str to FusedTrack
-        For each way. The first estimates, up to the first scored sample, are left out.
+    doppler: Measurements, ``v`` of shape (W, runs, 2, K).
+    snr_db: Signal-to-noise ratio of both.
+    delayed, hop: See `filter_velocity`.
+    Returns: For each way. The first estimates, up to the first scored sample, are left out.
 
     Examples
     --------
@@ -148,28 +125,14 @@ def matched_model(
 ) -> tuple[FloatArray, FilteredDoppler]:
     """Simulate a target and measurements that match the model of the filters exactly.
 
-    Parameters
-    ----------
-    runs, samples : int
-        Number of targets, and of samples of each.
-    snr_db : float
-        Signal-to-noise ratio that the variance of the measurements belongs to, with the fixed
+    runs, samples: Number of targets, and of samples of each.
+    snr_db: Signal-to-noise ratio that the variance of the measurements belongs to, with the fixed
         window.
-    rng : numpy.random.Generator
-        Source of randomness.
-
-    Returns
-    -------
-    truth : ndarray, shape (runs, samples, 2)
-        Velocity and acceleration, driven by white jerk.
-    doppler : FilteredDoppler
-        White measurements of two sensors at every sample.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or there would be more than ten million
-        samples.
+    rng: Source of randomness.
+    Returns truth (runs, samples, 2): Velocity and acceleration, driven by white jerk.
+        doppler: White measurements of two sensors at every sample.
+    Raises ValueError if an argument is not of the kind described, or there would be more than ten
+        million samples.
 
     Examples
     --------
@@ -201,22 +164,12 @@ def fusion_summary(
 ) -> dict[str, dict[str, FloatArray]]:
     """Return errors and NEES of each run, by the way of fusing and by what they are.
 
-    Parameters
-    ----------
-    ways : dict of str to FusedTrack
-        As `fuse_all` returns it.
-    truth : ndarray, shape (..., K, 2)
-        True velocity and acceleration; its last samples are those of the estimates.
-
-    Returns
-    -------
-    dict of str to dict of str to ndarray, shape (runs,)
-        Root mean square errors, and the mean of NEES over the record, which should be 2.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the truth is shorter than the estimates.
+    ways: As `fuse_all` returns it.
+    truth (..., K, 2): True velocity and acceleration; its last samples are those of the estimates.
+    Returns (runs,): Root mean square errors, and the mean of NEES over the record, which should be
+        2.
+    Raises ValueError if an argument is not of the kind described, or the truth is shorter than the
+        estimates.
 
     Examples
     --------
@@ -243,23 +196,11 @@ def fusion_errors(
 ) -> dict[str, dict[str, FloatArray]]:
     """Return the errors of the velocity of each run on a path, by the way of fusing and phase.
 
-    Parameters
-    ----------
-    ways : dict of str to FusedTrack
-        As `fuse_all` returns it.
-    path : VelocityPath
-        The truth.
-
-    Returns
-    -------
-    dict of str to dict of str to ndarray, shape (runs,)
-        Root mean squares in m/s.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the estimates go beyond the path or hold
-        none of a phase.
+    ways: As `fuse_all` returns it.
+    path: The truth.
+    Returns (runs,): Root mean squares in m/s.
+    Raises ValueError if an argument is not of the kind described, or the estimates go beyond the
+        path or hold none of a phase.
 
     Examples
     --------
@@ -289,20 +230,12 @@ def ablation(
 ) -> dict[str, dict[str, FloatArray]]:
     """Return the gain of each step beyond the document's first algorithm, alone and together.
 
-    Parameters
-    ----------
-    doppler : FilteredDoppler
-        Measurements on a path, ``v`` of shape (W, runs, 2, K).
-    snr_db : float
-        Signal-to-noise ratio of both sensors.
-    path : VelocityPath
-        The truth.
-
-    Returns
-    -------
-    dict of str to dict of str to ndarray, shape (runs,)
-        By the step, root mean square errors in m/s in the maneuver and at constant velocity, and
-        beside each the error of one sensor with a fixed window over it, in the same run.
+    doppler: Measurements on a path, ``v`` of shape (W, runs, 2, K).
+    snr_db: Signal-to-noise ratio of both sensors.
+    path: The truth.
+    Returns (runs,): By the step, root mean square errors in m/s in the maneuver and at constant
+        velocity, and beside each the error of one sensor with a fixed window over it, in the same
+        run.
 
     Examples
     --------
@@ -340,26 +273,14 @@ def ablation(
 def calibration(track: VelocityTrack, v: Real, skip: Index) -> dict[str, FloatArray]:
     """Compare the errors of one sensor's filter with those that it reports, at constant velocity.
 
-    Parameters
-    ----------
-    track : VelocityTrack
-        Of a target at constant velocity.
-    v : float
-        That velocity in m/s.
-    skip : int
-        Samples to leave out at the start.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (runs,)
-        Error and claimed error in m/s, the mean of NIS, which should be 1, and the correlation of
-        successive innovations, which should be 0. NIS is NaN if the start, where there is no
-        innovation, is not left out.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or nothing is left after the start.
+    track: Of a target at constant velocity.
+    v: That velocity in m/s.
+    skip: Samples to leave out at the start.
+    Returns (runs,): Error and claimed error in m/s, the mean of NIS, which should be 1, and the
+        correlation of successive innovations, which should be 0. NIS is NaN if the start, where
+        there is no innovation, is not left out.
+    Raises ValueError if an argument is not of the kind described, or nothing is left after the
+        start.
 
     Examples
     --------
@@ -385,24 +306,13 @@ def calibration(track: VelocityTrack, v: Real, skip: Index) -> dict[str, FloatAr
 def error_correlation(doppler: FilteredDoppler, v: Real, lags: Index) -> FloatArray:
     """Return the autocorrelation of the measurement errors, at a constant velocity.
 
-    Parameters
-    ----------
-    doppler : FilteredDoppler
-        Measurements of a target at constant velocity, with one window.
-    v : float
-        That velocity in m/s.
-    lags : int
-        Number of lags in samples.
-
-    Returns
-    -------
-    ndarray, shape (lags + 1,)
-        Mean over the runs and sensors, from lag 0 on; see `overlap_correlation_discrete`.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or there are no more samples than lags.
+    doppler: Measurements of a target at constant velocity, with one window.
+    v: That velocity in m/s.
+    lags: Number of lags in samples.
+    Returns (lags + 1,): Mean over the runs and sensors, from lag 0 on; see
+        `overlap_correlation_discrete`.
+    Raises ValueError if an argument is not of the kind described, or there are no more samples than
+        lags.
 
     Examples
     --------

@@ -31,14 +31,9 @@ CLIFF_SNRS_DB = np.arange(-8.0, -1.0)
 class FusionStudy:
     """Errors of every run of all algorithms on all paths at all signal-to-noise ratios.
 
-    Attributes
-    ----------
-    paths : tuple of str
-        Names of the paths.
-    snrs_db : ndarray, shape (S,)
-        Signal-to-noise ratios of a sample in dB.
-    measures : dict of str to ndarray, shape (paths, S, 6, runs)
-        Of each run, those of `run_measures`.
+    paths: Names of the paths.
+    snrs_db (S,): Signal-to-noise ratios of a sample in dB.
+    measures (paths, S, 6, runs): Of each run, those of `run_measures`.
 
     Examples
     --------
@@ -90,14 +85,7 @@ class FusionStudy:
 def study_table(seed: Index = SEED) -> WindowTable:
     """Return the table of windows that the study was made with.
 
-    Parameters
-    ----------
-    seed : int
-        That of the study.
-
-    Returns
-    -------
-    WindowTable
+    seed: That of the study.
 
     Examples
     --------
@@ -117,22 +105,11 @@ def study_cell(
 ) -> AlgorithmRuns:
     """Simulate one cell of the study.
 
-    Parameters
-    ----------
-    path : {"path 1", "path 2", "fighter"}
-        See `velocity_path`.
-    snr_db : float
-        Signal-to-noise ratio of a sample in dB, not below -100.
-    table : WindowTable
-        For the choice of windows.
-    runs : int
-        Number of runs. The first are the same however many follow.
-    seed : int
-        Of the study; together with path and ratio it fixes the random numbers.
-
-    Returns
-    -------
-    AlgorithmRuns
+    path: See `velocity_path`.
+    snr_db: Signal-to-noise ratio of a sample in dB, not below -100.
+    table: For the choice of windows.
+    runs: Number of runs. The first are the same however many follow.
+    seed: Of the study; together with path and ratio it fixes the random numbers.
 
     Examples
     --------
@@ -152,15 +129,8 @@ def study_cell(
 def cell_measures(result: AlgorithmRuns) -> dict[tuple[int, str], FloatArray]:
     """Return the measures of every run.
 
-    Parameters
-    ----------
-    result : AlgorithmRuns
-        Runs of all algorithms. Of algorithms with one sensor the first one counts.
-
-    Returns
-    -------
-    dict of (int, str) to ndarray, shape (runs,)
-        By algorithm and measure; see `run_measures`.
+    result: Runs of all algorithms. Of algorithms with one sensor the first one counts.
+    Returns (runs,): By algorithm and measure; see `run_measures`.
 
     Examples
     --------
@@ -179,10 +149,6 @@ def cell_measures(result: AlgorithmRuns) -> dict[tuple[int, str], FloatArray]:
 def saved_study() -> FusionStudy:
     """Read the study as ``make study NAME=velocity_fusion`` wrote it.
 
-    Returns
-    -------
-    FusionStudy
-
     Examples
     --------
     >>> saved_study().runs
@@ -199,11 +165,8 @@ def saved_study() -> FusionStudy:
 def saved_failures() -> dict[tuple[str, int], tuple[FloatArray, tuple[ConfidenceInterval, ...]]]:
     """Read the fractions of runs that fail where the errors begin to rise.
 
-    Returns
-    -------
-    dict of (str, int) to tuple of (ndarray, tuple of ConfidenceInterval)
-        By path and algorithm: signal-to-noise ratios in dB, and at each the fraction of runs whose
-        error of the whole record is more than `failed_rmse` of `chosen`, with its interval.
+    Returns: By path and algorithm: signal-to-noise ratios in dB, and at each the fraction of runs
+        whose error of the whole record is more than `failed_rmse` of `chosen`, with its interval.
 
     Examples
     --------
@@ -235,26 +198,13 @@ def failure_limit(
 ) -> ConfidenceInterval:
     """Return the signal-to-noise ratio above which an algorithm does not fail.
 
-    Parameters
-    ----------
-    snrs_db : array_like, shape (S,)
-        Signal-to-noise ratios in dB, rising.
-    shares : sequence of ConfidenceInterval, length S
-        Fraction of failed runs at each.
-    limit : float, optional
-        Fraction from which an algorithm has failed; `failed_share` of `chosen` if None.
-
-    Returns
-    -------
-    ConfidenceInterval
-        Where the fraction falls to the limit for the last time, in dB, by linear interpolation; and
-        where the ends of its interval do.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the fraction or an end of its interval does
-        not pass the limit between the ratios.
+    snrs_db (S,): Signal-to-noise ratios in dB, rising.
+    shares (S,): Fraction of failed runs at each.
+    limit: Fraction from which an algorithm has failed; `failed_share` of `chosen` if None.
+    Returns: Where the fraction falls to the limit for the last time, in dB, by linear
+        interpolation; and where the ends of its interval do.
+    Raises ValueError if an argument is not of the kind described, or the fraction or an end of its
+        interval does not pass the limit between the ratios.
 
     Examples
     --------

@@ -41,12 +41,10 @@ _KEPT = {"1": MEASURES, "5 state": ("whole", "cee")}  # of the others all but wh
 class FusionSweep:
     """Measures of every run of all algorithms for all that the document leaves open.
 
-    Attributes
-    ----------
-    cells : dict of tuple to ndarray, shape (runs,)
-        By path, signal-to-noise ratio in dB, intensity of the jerk, sensors, algorithm, setting
-        (its fixed window or its set of windows) and measure, see `run_measures`. Of algorithms with
-        one sensor only the better one's; "5 state" is algorithm 5 with the fused state fed back.
+    cells (runs,): By path, signal-to-noise ratio in dB, intensity of the jerk, sensors, algorithm,
+        setting (its fixed window or its set of windows) and measure, see `run_measures`. Of
+        algorithms with one sensor only the better one's; "5 state" is algorithm 5 with the fused
+        state fed back.
 
     Examples
     --------
@@ -84,23 +82,12 @@ def sweep_cell(
 ) -> dict[tuple, FloatArray]:
     """Simulate one path at one signal-to-noise ratio, and run everything on the same samples.
 
-    Parameters
-    ----------
-    path : str
-        One of `PATHS`.
-    snr_db : int
-        Signal-to-noise ratio of a sample of the better sensor in dB.
-    table : WindowTable
-        For the choice of windows, with those of `chosen`.
-    runs : int
-        Number of runs. The first are the same however many follow.
-    seed : int
-        Of the sweep; together with path and ratio it fixes the random numbers.
-
-    Returns
-    -------
-    dict of tuple to ndarray, shape (runs,)
-        By intensity, sensors, algorithm, setting and measure; see `FusionSweep`.
+    path: One of `PATHS`.
+    snr_db: Signal-to-noise ratio of a sample of the better sensor in dB.
+    table: For the choice of windows, with those of `chosen`.
+    runs: Number of runs. The first are the same however many follow.
+    seed: Of the sweep; together with path and ratio it fixes the random numbers.
+    Returns (runs,): By intensity, sensors, algorithm, setting and measure; see `FusionSweep`.
 
     Examples
     --------
@@ -163,10 +150,6 @@ def _velocities(doppler, two, assumed, q, table):
 @cache
 def saved_sweep() -> FusionSweep:
     """Read the sweep as ``make study NAME=velocity_fusion`` wrote it.
-
-    Returns
-    -------
-    FusionSweep
 
     Examples
     --------

@@ -14,14 +14,9 @@ from ...replication.published import Published, read_published
 class Reported:
     """All that the document states and a computer can use.
 
-    Attributes
-    ----------
-    stated : Published
-        What the document states, in SI units and dB.
-    chosen : Published
-        What it leaves open and this book chooses.
-    sources : dict of str to str
-        Where each of them stands, and how it was obtained.
+    stated: What the document states, in SI units and dB.
+    chosen: What it leaves open and this book chooses.
+    sources: Where each of them stands, and how it was obtained.
     """
 
     stated: Published
@@ -32,10 +27,6 @@ class Reported:
 @cache
 def reported() -> Reported:
     """Return the values that the document states, and those filled in.
-
-    Returns
-    -------
-    Reported
 
     Examples
     --------

@@ -17,25 +17,12 @@ def residual_variance(
 ) -> FloatArray:
     """Return the variance of the measurements as estimated from the residuals after the update.
 
-    Parameters
-    ----------
-    residual : array_like, shape (..., K)
-        Measurement minus H times the updated state.
-    HPH : array_like, broadcast to (...)
-        H P H' of the updated covariance.
-    sign : {-1, 1}
-        -1 as the document has it, 1 as it should be: the variance of this residual is R - H P H',
+    residual (..., K): Measurement minus H times the updated state.
+    HPH: H P H' of the updated covariance.
+    sign: -1 as the document has it, 1 as it should be: the variance of this residual is R - H P H',
         so R is its variance *plus* H P H'.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Can be negative with the sign of the document.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or there is no residual.
+    Returns (...): Can be negative with the sign of the document.
+    Raises ValueError if an argument is not of the kind described, or there is no residual.
 
     Notes
     -----
@@ -63,26 +50,13 @@ def updated_residual(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the residual after the update, and H P H' then, of a scalar measurement.
 
-    Parameters
-    ----------
-    innovation : array_like, shape (...)
-        Residual before the update.
-    S : array_like, broadcast to (...)
-        Its variance.
-    R : float
-        Supposed variance of the measurement.
-
-    Returns
-    -------
-    residual : ndarray, shape (...)
-        R / S times the innovation.
-    HPH : ndarray, shape (...)
-        R - R^2 / S.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a residual is beyond what a float can hold.
+    innovation (...): Residual before the update.
+    S: Its variance.
+    R: Supposed variance of the measurement.
+    Returns residual (...): R / S times the innovation.
+        HPH (...): R - R^2 / S.
+    Raises ValueError if an argument is not of the kind described, or a residual is beyond what a
+        float can hold.
 
     Examples
     --------

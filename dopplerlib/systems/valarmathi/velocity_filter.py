@@ -22,27 +22,18 @@ FEEDBACK = ("none", "own", "fused", "state")
 class VelocityTrack:
     """Estimates of the filters behind one or two sensors, and of their fusion.
 
-    Attributes
-    ----------
-    first : int
-        Sample of the first estimate.
-    hop : int
-        Samples from one estimate to the next.
-    x : ndarray, shape (runs, sensors, K, 2)
-        Velocity and acceleration as each sensor's filter has them, in m/s and m/s^2.
-    P : ndarray, shape (runs, sensors, K, 2, 2)
-        Their covariances.
-    P12 : ndarray, shape (runs, K, 2, 2)
-        Covariance between the errors of the two filters, for a target that does move as they
-        assume.
-    fused_x : ndarray, shape (runs, K, 2)
-        Naive fusion of the two; of one sensor its own state.
-    fused_P : ndarray, shape (runs, K, 2, 2)
-        Covariance that the naive fusion reports.
-    window : ndarray of int, shape (runs, sensors, K)
-        Lengths of the windows that were used, in samples.
-    innovation, S : ndarray, shape (runs, sensors, K)
-        Innovations in m/s and their variances as the filter reports them; NaN at the start.
+    first: Sample of the first estimate.
+    hop: Samples from one estimate to the next.
+    x (runs, sensors, K, 2): Velocity and acceleration as each sensor's filter has them, in m/s and
+        m/s^2.
+    P (runs, sensors, K, 2, 2): Their covariances.
+    P12 (runs, K, 2, 2): Covariance between the errors of the two filters, for a target that does
+        move as they assume.
+    fused_x (runs, K, 2): Naive fusion of the two; of one sensor its own state.
+    fused_P (runs, K, 2, 2): Covariance that the naive fusion reports.
+    window (runs, sensors, K): Lengths of the windows that were used, in samples.
+    innovation, S (runs, sensors, K): Innovations in m/s and their variances as the filter reports
+        them; NaN at the start.
     """
 
     first: Index
@@ -72,40 +63,22 @@ def filter_velocity(
 ) -> VelocityTrack:
     """Run a filter behind each sensor, and fuse their states as the document does.
 
-    Parameters
-    ----------
-    doppler : FilteredDoppler
-        Measurements, ``v`` of shape (W, runs, sensors, K) with one or two sensors.
-    snr_db : array_like, shape () or (sensors,)
-        Signal-to-noise ratio in dB that each filter takes, for the variance of the measurements.
-    window : int, optional
-        Length of the fixed window, or of the first one; that of `chosen` if None.
-    table : WindowTable, optional
-        For the choice of windows; needed with a feedback.
-    feedback : {"none", "own", "fused", "state"}
-        What chooses the next window: nothing, each filter's own acceleration and measured
+    doppler: Measurements, ``v`` of shape (W, runs, sensors, K) with one or two sensors.
+    snr_db () or (sensors,): Signal-to-noise ratio in dB that each filter takes, for the variance of
+        the measurements.
+    window: Length of the fixed window, or of the first one; that of `chosen` if None.
+    table: For the choice of windows; needed with a feedback.
+    feedback: What chooses the next window: nothing, each filter's own acceleration and measured
         signal-to-noise ratio, or the fused acceleration and the mean of the ratios. With "state"
         both filters also go on from the fused state and covariance, which counts it twice.
-    delayed : bool
-        Whether the filters know that a measurement belongs to the middle of its window: H is
+    delayed: Whether the filters know that a measurement belongs to the middle of its window: H is
         [1, -delay] then and not [1, 0].
-    hop : int
-        Samples from one measurement that is used to the next.
-    scale : float
-        Factor to the assumed variance of the measurements.
-    q : float, optional
-        Intensity of the white jerk in (m/s^2)^2/s; that of `chosen` if None.
-
-    Returns
-    -------
-    VelocityTrack
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, `doppler` has not one or two sensors or begins
-        with what is missing, `snr_db` is of another number of sensors, `window` is none of its
-        windows, or a feedback is asked for without a table of the same windows.
+    hop: Samples from one measurement that is used to the next.
+    scale: Factor to the assumed variance of the measurements.
+    q: Intensity of the white jerk in (m/s^2)^2/s; that of `chosen` if None.
+    Raises ValueError if an argument is not of the kind described, `doppler` has not one or two
+        sensors or begins with what is missing, `snr_db` is of another number of sensors, `window`
+        is none of its windows, or a feedback is asked for without a table of the same windows.
 
     Notes
     -----

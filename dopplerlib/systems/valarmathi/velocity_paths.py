@@ -20,24 +20,14 @@ Samples = Annotated[FloatArray, exactly(None)]
 class VelocityPath:
     """Velocity of a target over time, and the samples of each phase.
 
-    Attributes
-    ----------
-    name : str
-        One of "path 1", "path 2" and "fighter".
-    time : ndarray, shape (n,)
-        In s.
-    v : ndarray, shape (n,)
-        Speed of approach in m/s.
-    a : ndarray, shape (n,)
-        Its derivative in m/s^2.
-    scored : ndarray of bool, shape (n,)
-        Samples whose errors count.
-    maneuver : ndarray of bool, shape (n,)
-        Those with an acceleration.
-    constant : ndarray of bool, shape (n,)
-        Those without one, for some time already.
-    steady : ndarray of bool, shape (n,)
-        Those with one, for some time already.
+    name: One of "path 1", "path 2" and "fighter".
+    time (n,): In s.
+    v (n,): Speed of approach in m/s.
+    a (n,): Its derivative in m/s^2.
+    scored (n,): Samples whose errors count.
+    maneuver (n,): Those with an acceleration.
+    constant (n,): Those without one, for some time already.
+    steady (n,): Those with one, for some time already.
     """
 
     name: PathName
@@ -62,23 +52,11 @@ class VelocityPath:
 def velocity_path(name: PathName, gentle: Positive | None = None) -> VelocityPath:
     """Return one of the courses of velocity.
 
-    Parameters
-    ----------
-    name : {"path 1", "path 2", "fighter"}
-        "path 2" is the fast maneuver whose numbers the document states. "path 1", which it does
-        not define, has a gentle acceleration instead. "fighter" begins at the Mach number and
-        has the accelerations that the document claims and does not simulate.
-    gentle : float, optional
-        Acceleration of path 1 in m/s^2; that of `chosen` if None.
-
-    Returns
-    -------
-    VelocityPath
-
-    Raises
-    ------
-    ValueError
-        If `name` is none of the three, or the target would turn back on path 1.
+    name: "path 2" is the fast maneuver whose numbers the document states. "path 1", which it does
+        not define, has a gentle acceleration instead. "fighter" begins at the Mach number and has
+        the accelerations that the document claims and does not simulate.
+    gentle: Acceleration of path 1 in m/s^2; that of `chosen` if None.
+    Raises ValueError if `name` is none of the three, or the target would turn back on path 1.
 
     Examples
     --------

@@ -35,16 +35,10 @@ Lengths = Annotated[IntArray, _lengths]  # of windows, in samples
 class WindowTable:
     """The best window for some accelerations and signal-to-noise ratios.
 
-    Attributes
-    ----------
-    accelerations : ndarray, shape (A,)
-        In m/s^2, rising.
-    snrs_db : ndarray, shape (B,)
-        In dB, rising.
-    windows : ndarray of int, shape (W,)
-        Lengths that were tried, in samples.
-    cee : ndarray, shape (A, B, W)
-        Their cumulative estimation errors at the end of a record, mean over the runs.
+    accelerations (A,): In m/s^2, rising.
+    snrs_db (B,): In dB, rising.
+    windows (W,): Lengths that were tried, in samples.
+    cee (A, B, W): Their cumulative estimation errors at the end of a record, mean over the runs.
 
     Examples
     --------
@@ -106,21 +100,10 @@ def cumulative_error(
 ) -> FloatArray:
     """Return the running mean of the relative errors, which the document judges by.
 
-    Parameters
-    ----------
-    v : array_like, shape (K,)
-        True velocity in m/s, nowhere zero.
-    estimate : array_like, shape (..., K)
-        Estimated velocities.
-
-    Returns
-    -------
-    ndarray, shape (..., K)
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a value is not finite, or a true velocity is zero.
+    v (K,): True velocity in m/s, nowhere zero.
+    estimate (..., K): Estimated velocities.
+    Returns (..., K)
+    Raises ValueError if shapes do not fit, a value is not finite, or a true velocity is zero.
 
     Notes
     -----

@@ -20,23 +20,11 @@ Span = tuple[Real, Real]
 def best_window(acceleration: Reals, snr_db: Decibels) -> FloatArray:
     """Return the window whose velocity, used as that of its end, has the least error.
 
-    Parameters
-    ----------
-    acceleration : array_like, shape (...)
-        In m/s^2, not zero.
-    snr_db : array_like, broadcast to (...)
-        Signal-to-noise ratio of a sample in dB.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Length in samples, any number: a constant times the acceleration to the power -2/5 and the
-        signal-to-noise ratio to the power -1/5.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described or an acceleration is zero.
+    acceleration (...): In m/s^2, not zero.
+    snr_db: Signal-to-noise ratio of a sample in dB.
+    Returns (...): Length in samples, any number: a constant times the acceleration to the power
+        -2/5 and the signal-to-noise ratio to the power -1/5.
+    Raises ValueError if an argument is not of the kind described or an acceleration is zero.
 
     Examples
     --------
@@ -54,20 +42,10 @@ def best_window(acceleration: Reals, snr_db: Decibels) -> FloatArray:
 def law_rmse(window: Reals, acceleration: Reals, snr_db: Decibels) -> FloatArray:
     """Return the error of the Doppler filter's velocity, taken as that of the window's end.
 
-    Parameters
-    ----------
-    window, acceleration, snr_db : array_like, broadcast to (...)
-        Length in samples, at least 2; m/s^2; dB.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Root mean square in m/s: the Cramér-Rao bound and half a window of delay.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a window is shorter than 2 samples.
+    window, acceleration, snr_db: Length in samples, at least 2; m/s^2; dB.
+    Returns (...): Root mean square in m/s: the Cramér-Rao bound and half a window of delay.
+    Raises ValueError if an argument is not of the kind described, or a window is shorter than 2
+        samples.
 
     Examples
     --------
@@ -82,22 +60,12 @@ def law_rmse(window: Reals, acceleration: Reals, snr_db: Decibels) -> FloatArray
 def linear_cost(accelerations: Rising, snrs_db: Rising, points: Count = 40) -> FloatArray:
     """Return the growth of the error by linear interpolation of the best window between nodes.
 
-    Parameters
-    ----------
-    accelerations, snrs_db : array_like, shape (A,) and (B,)
-        Nodes at which the best window is known, rising: two or more of each.
-    points : int
-        Points along each axis, from the first node to the last.
-
-    Returns
-    -------
-    ndarray, shape (points, points)
-        Error with the interpolated window over the error with the best one.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or an acceleration is not positive.
+    accelerations, snrs_db (A,) and (B,): Nodes at which the best window is known, rising: two or
+        more of each.
+    points: Points along each axis, from the first node to the last.
+    Returns (points, points): Error with the interpolated window over the error with the best one.
+    Raises ValueError if an argument is not of the kind described, or an acceleration is not
+        positive.
 
     Examples
     --------
@@ -124,25 +92,12 @@ def linear_error(
 ) -> FloatArray:
     """Return the relative error of the least-squares line or plane through the best windows.
 
-    Parameters
-    ----------
-    accelerations, snrs_db : tuple of float
-        Smallest and largest.
-    points : int
-        Points along each axis.
-    along : {"acceleration", "snr", "both"}
-        Variable of the line, one for each value of the other variable; or the plane in both.
-
-    Returns
-    -------
-    ndarray, shape (points, points)
-        The line, in acceleration or in dB, over the best window, less one.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, a range does not rise, or an acceleration is
-        not positive.
+    accelerations, snrs_db: Smallest and largest.
+    points: Points along each axis.
+    along: Variable of the line, one for each value of the other variable; or the plane in both.
+    Returns (points, points): The line, in acceleration or in dB, over the best window, less one.
+    Raises ValueError if an argument is not of the kind described, a range does not rise, or an
+        acceleration is not positive.
 
     Examples
     --------
@@ -175,20 +130,10 @@ def linear_error(
 def best_lengths(table: WindowTable) -> FloatArray:
     """Return the best windows of a simulation, interpolated by a parabola in logarithms.
 
-    Parameters
-    ----------
-    table : WindowTable
-        As `window_table` returns it.
-
-    Returns
-    -------
-    ndarray, shape (A, B)
-        In samples, any number; NaN where the best of the windows tried is the first or last one.
-
-    Raises
-    ------
-    ValueError
-        If `table` is not of the kind described, or an error is not positive.
+    table: As `window_table` returns it.
+    Returns (A, B): In samples, any number; NaN where the best of the windows tried is the first or
+        last one.
+    Raises ValueError if `table` is not of the kind described, or an error is not positive.
 
     Examples
     --------
@@ -210,23 +155,11 @@ def best_lengths(table: WindowTable) -> FloatArray:
 def law_exponents(table: WindowTable) -> tuple[float, float]:
     """Fit powers of acceleration and signal-to-noise ratio to the best windows of a simulation.
 
-    Parameters
-    ----------
-    table : WindowTable
-        As `window_table` returns it. Cells whose best window is the first or last one, or that
+    table: As `window_table` returns it. Cells whose best window is the first or last one, or that
         have no acceleration, do not count.
-
-    Returns
-    -------
-    acceleration : float
-        Exponent of the acceleration; -2/5 in the law.
-    snr : float
-        Exponent of the signal-to-noise ratio; -1/5 in the law.
-
-    Raises
-    ------
-    ValueError
-        If `table` is not of the kind described, or less than four cells count.
+    Returns acceleration: Exponent of the acceleration; -2/5 in the law.
+        snr: Exponent of the signal-to-noise ratio; -1/5 in the law.
+    Raises ValueError if `table` is not of the kind described, or less than four cells count.
 
     Examples
     --------

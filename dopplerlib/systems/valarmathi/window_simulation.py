@@ -26,33 +26,17 @@ def window_table(
 ) -> WindowTable:
     """Find the best window for every acceleration and signal-to-noise ratio by simulation.
 
-    Parameters
-    ----------
-    accelerations, snrs_db : array_like, shape (A,) and (B,), optional
-        Rising, at least two of each, in m/s^2 and dB; those of `chosen` if None.
-    rng : numpy.random.Generator
-        Source of randomness.
-    runs : int
-        Records of one sensor in each cell.
-    windows : array_like of int, shape (W,), optional
-        Lengths to try; those of `chosen` if None.
-    judge : {"measurement", "filter"}
-        Whose velocities the error is computed of: those of the Doppler filter, or those of the
+    accelerations, snrs_db (A,) and (B,): Rising, at least two of each, in m/s^2 and dB; those of
+        `chosen` if None.
+    rng: Source of randomness.
+    runs: Records of one sensor in each cell.
+    windows (W,): Lengths to try; those of `chosen` if None.
+    judge: Whose velocities the error is computed of: those of the Doppler filter, or those of the
         Kalman filter behind it. The document does not say.
-    duration : float
-        How long the target decelerates in s, after a while without.
-    q : float, optional
-        See `filter_velocity`, of which the second judge needs it.
-
-    Returns
-    -------
-    WindowTable
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, a record is longer than the document's, or the
-        target would turn back.
+    duration: How long the target decelerates in s, after a while without.
+    q: See `filter_velocity`, of which the second judge needs it.
+    Raises ValueError if an argument is not of the kind described, a record is longer than the
+        document's, or the target would turn back.
 
     Notes
     -----

@@ -25,17 +25,12 @@ _LOUD = 1e4  # of the median sample: beyond, sums in single precision keep too m
 class FilteredDoppler:
     """Velocities from windows of several lengths, which all end with the same sample.
 
-    Attributes
-    ----------
-    windows : ndarray of int, shape (W,)
-        Lengths in samples.
-    first : int
-        Sample with which the first windows end.
-    v : ndarray, shape (W, ..., K)
-        Measured velocities in m/s, one per sample; NaN where all samples of the window are the
-        same, or one is so loud that it hides the others.
-    snr_db : ndarray, shape (W, ..., K)
-        Signal-to-noise ratios that the spectra show, in dB; -30, the least, where `v` is NaN.
+    windows (W,): Lengths in samples.
+    first: Sample with which the first windows end.
+    v (W, ..., K): Measured velocities in m/s, one per sample; NaN where all samples of the window
+        are the same, or one is so loud that it hides the others.
+    snr_db (W, ..., K): Signal-to-noise ratios that the spectra show, in dB; -30, the least, where
+        `v` is NaN.
 
     Examples
     --------
@@ -87,25 +82,12 @@ def doppler_filter(
     to the sampling rate, for targets that approach; the vertex of the parabola through the
     magnitudes of this bin and its neighbors; and the velocity that this frequency belongs to.
 
-    Parameters
-    ----------
-    x : array_like of complex, shape (..., n)
-        IQ samples at the interval T of the document.
-    windows : array_like of int, shape (W,), optional
-        Lengths in samples; all of `chosen` if None.
-    first : int, optional
-        Sample with which the first windows end; that of `chosen` if None.
-
-    Returns
-    -------
-    FilteredDoppler
-        NaN where a window holds the same sample only, or one that hides the others.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a window is longer than the transform or
-        reaches back beyond the first sample.
+    x (..., n): IQ samples at the interval T of the document.
+    windows (W,): Lengths in samples; all of `chosen` if None.
+    first: Sample with which the first windows end; that of `chosen` if None.
+    Returns: NaN where a window holds the same sample only, or one that hides the others.
+    Raises ValueError if an argument is not of the kind described, or a window is longer than the
+        transform or reaches back beyond the first sample.
 
     Notes
     -----
@@ -165,17 +147,9 @@ def measurement_variance(
 ) -> FloatArray:
     """Return the variance of a measured velocity if it reaches the Cramér-Rao bound.
 
-    Parameters
-    ----------
-    windows : array_like, shape (...)
-        Lengths in samples, at least 2.
-    snr_db : array_like, broadcast to (...)
-        Signal-to-noise ratio of a sample in dB.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        In (m/s)^2.
+    windows (...): Lengths in samples, at least 2.
+    snr_db: Signal-to-noise ratio of a sample in dB.
+    Returns (...): In (m/s)^2.
 
     Examples
     --------

@@ -16,21 +16,10 @@ __getattr__, __dir__ = attach(__name__, __path__)
 def evidence(*, rng: np.random.Generator) -> dict:
     """Collect the evidence for ``data/valarmathi/claims.toml``.
 
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-        Source of randomness for windows and front end; comparisons and limits are those of the
+    rng: Source of randomness for windows and front end; comparisons and limits are those of the
         saved study.
-
-    Returns
-    -------
-    dict
-        By the id of the claim; see `judge_all`.
-
-    Raises
-    ------
-    ValueError
-        If `rng` is not a generator.
+    Returns: By the id of the claim; see `judge_all`.
+    Raises ValueError if `rng` is not a generator.
     """
     for_windows, for_front_end = rng.spawn(2)
     return {
