@@ -59,7 +59,9 @@ def central_filter(
 
     Notes
     -----
-    The gate looks at each radar by itself, at range and range rate together.
+    The gate looks at each radar by itself, at range and range rate together. A person behind the
+    radars gives the same ranges and rates as one in front: nothing but the start keeps the state
+    there, and near the line through the radars it may pass to the other side.
 
     Examples
     --------
