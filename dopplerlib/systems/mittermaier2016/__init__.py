@@ -12,7 +12,7 @@ _HOME = by_name(
         "start": "Starts samples_needed start_box start_misfit table2_starts",
         "error_maps": "ErrorMap comparable error_map error_map_bound fraction_above",
         "noise_sweep": "NoiseSweep SweepReading error_limits grid_points mean_norm noise_levels"
-        " run_noise_sweep sweep_array",
+        " run_noise_sweep sweep_array sweep_bounds",
         "example": "ExampleRuns run_example",
         "end_to_end": "track_iq",
         "chain_bounds": "median_error position_bound position_bound_iq record_length",

@@ -32,6 +32,7 @@ from .noise_sweep import mean_norm as mean_norm
 from .noise_sweep import noise_levels as noise_levels
 from .noise_sweep import run_noise_sweep as run_noise_sweep
 from .noise_sweep import sweep_array as sweep_array
+from .noise_sweep import sweep_bounds as sweep_bounds
 from .published import PublishedFigure3 as PublishedFigure3
 from .published import PublishedFigure4 as PublishedFigure4
 from .published import PublishedFigure6 as PublishedFigure6
@@ -128,6 +129,7 @@ __all__ = [
     "start_misfit",
     "still_counts",
     "sweep_array",
+    "sweep_bounds",
     "sweep_readings",
     "sweep_score",
     "table2_starts",

@@ -161,17 +161,50 @@ def run_noise_sweep(
         errors.append(_sizes(start.x - x))
     errors = np.array(errors)  # levels, two parts, draws, grid points
     mean, median = errors.mean(axis=-1), np.median(errors, axis=-1)
-    if bound:
-        P = crlb(x, array, 1.0, samples, T, reading.likelihood, free=_PLANE)
-        unit = np.stack([mean_norm(P[..., part, part]).mean(axis=-1) for part in _PARTS])
-    else:
-        unit = np.full((2, draws), np.nan)
+    unit = _unit_bounds(x, reading) if bound else np.full((2, draws), np.nan)
     bounds = np.sqrt(variance[levels])[:, None, None] * unit
     parts = (values[:, i] for values in (mean, median, bounds) for i in (0, 1))
     return NoiseSweep(variance[levels], *parts)
 
 
 _PARTS = (np.s_[:2], np.s_[3:5])
+
+
+@checked
+def sweep_bounds(
+    draws: Count, *, rng: np.random.Generator, reading: SweepReading | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Return the bounds of the study for noise of 1 Hz, without simulating it.
+
+    draws: Number of velocity draws.
+    rng: Source of velocities.
+    reading: What the text leaves open; `SweepReading()` if None.
+    Returns position, velocity (draws,): Mean sizes of the errors at the Cramér-Rao bound in m and
+        m/s, averaged over the grid, as `run_noise_sweep` has them.
+    Raises ValueError if `draws` is not a positive whole number, or the reading names something
+        unknown.
+
+    Examples
+    --------
+    >>> coarse = SweepReading(spacing=0.25)
+    >>> position, velocity = sweep_bounds(2, rng=np.random.default_rng(1), reading=coarse)
+    >>> result = run_noise_sweep([30], 2, rng=np.random.default_rng(1), reading=coarse)
+    >>> bool(np.allclose(result.bound_position[0], position))
+    True
+    """
+    reading = SweepReading() if reading is None else reading
+    levels = 1 + len(noise_levels())
+    streams = [child.spawn(levels)[0] for child in rng.spawn(draws)]
+    position, velocity = _unit_bounds(np.stack([_states(reading, one) for one in streams]), reading)
+    return position, velocity
+
+
+def _unit_bounds(x, reading):
+    """Return mean sizes of both parts of the error at the bound, for 1 Hz; shape (2, draws)."""
+    sampling = _study().sampling
+    array = sweep_array(reading.axis)
+    P = crlb(x, array, 1.0, sampling.samples, sampling.T, reading.likelihood, free=_PLANE)
+    return np.stack([mean_norm(P[..., part, part]).mean(axis=-1) for part in _PARTS])
 
 
 @checked

@@ -4,8 +4,11 @@ import numpy as np
 
 from ...._hints import checked
 from ...._lazy import attach
+from ....replication.documents import read_document
 from .chain import chain_evidence
+from .figure4 import figure4_evidence
 from .first_covariance import covariance_evidence
+from .maps import map_evidence
 from .other_motion import motion_evidence
 from .printed import printed_evidence
 from .right_models import right_evidence
@@ -33,17 +36,20 @@ def evidence(*, rng: np.random.Generator) -> dict[str, object]:
     ValueError
         If `rng` is not a generator.
     """
-    start, tracking, signal, chain = rng.spawn(4)
+    choice = read_document("mittermaier2016").choice
+    start, tracking, signal, chain, maps, sweep = rng.spawn(6)
     runs, covariances, right, motion = tracking.spawn(4)
     return (
         printed_evidence()
-        | signal_evidence(signal)
-        | start_evidence(start)
+        | signal_evidence(choice, signal)
+        | map_evidence(choice, maps)
+        | figure4_evidence(choice, sweep)
+        | start_evidence(choice, start)
         | tracking_evidence(runs)
         | covariance_evidence(covariances)
         | right_evidence(right)
         | motion_evidence(motion)
-        | chain_evidence(chain)
+        | chain_evidence(choice, chain)
     )
 
 

@@ -3,12 +3,10 @@
 import numpy as np
 
 from ...._data import read_json
-from ....evaluation.bounds import crlb
 from ....evaluation.consistency import chi2_interval
-from ....model.doppler import doppler_jacobian, doppler_shift
-from ....replication.evidence import Readings, sweep
+from ....model.doppler import doppler_shift
+from ....replication.evidence import sweep
 from ..published import reported
-from ..start import samples_needed, start_misfit
 from ._runs import choices, starts
 from .tracking import block_errors
 
@@ -22,25 +20,16 @@ def printed_evidence() -> dict[str, object]:
         _sensors()
         | _scene()
         | _table2()
-        | _figure4()
         | _figure6()
         | _chi_square()
-        | _window()
-        | _covariance()
         | {"real-time": 1 / reported().scenario.T * operations(6, 6)}
     )
 
 
 def _sensors():
-    s = reported().scenario
     return {
         "sensitivity": 2 * _CARRIER / _SPEED_OF_LIGHT,
         "unit-of-acceleration": -2.0,  # the power of the second
-        "state-from-constant": float(np.linalg.matrix_rank(doppler_jacobian(s.x0, s.array))),
-        "poor-observability": float(
-            np.sqrt(np.trace(crlb(s.x0, s.array, s.sigma_f, 10, s.T, "constant_velocity")[:3, :3]))
-        ),
-        "many-measurements": float(samples_needed(0.01)),
     }
 
 
@@ -96,12 +85,6 @@ def _table2():
         "table2-velocity-norm": float(np.linalg.norm(error[3:])),
         "start-drawn": float(drawn.start[0]),
         "first-z-error": 100 * float(drawn.first_error[2]),
-        "start-likely": Readings(
-            {
-                "start of Table 2": start_misfit(table.x_ml, rounding=0.0005) / 2,
-                "start as drawn": start_misfit(drawn.start, rounding=0.0005) / 2,
-            }
-        ),
         "nees-small": sweep(choices("start"), initial_nees),
         "final-true": s.truth[-1, :3],
     }
@@ -112,15 +95,6 @@ def initial_nees(start):
     s = reported().scenario
     error = starts()[start] - s.x0
     return float(error @ np.linalg.solve(s.P0, error)) / 6
-
-
-def _figure4():
-    drawn = reported().figure4
-    return {
-        "figure4-dots": float(drawn.position.shape[1]),
-        "figure4-position": float(drawn.position.max()),
-        "figure4-velocity": float(drawn.velocity.max()),
-    }
 
 
 def _figure6():
@@ -165,41 +139,4 @@ def _chi_square():
         "chi-square-mean": mean,
         "chi-square-variance": float(np.sum((value - mean) ** 2 * mass)),
         "chi-square-interval": np.array(chi2_interval(6)),
-    }
-
-
-def _window():
-    """Return the mean of ten samples minus the first, in standard errors of the mean."""
-    s, p = reported().scenario, reported().figure3
-    states = np.zeros((len(p.x), len(p.y), 6))
-    states[..., 0], states[..., 1] = p.x[:, None], p.y
-    states[..., 3:] = p.velocity
-    apart = np.linalg.norm(states[..., None, :3] - p.array.positions, axis=-1).min(axis=-1)
-    drift = _drift(states[apart > 1e-9], p.array, p.T, p.sigma_f)
-    return {
-        "constant-table2": float(_drift(s.x0[None], s.array, s.T, s.sigma_f)[0]),
-        "constant-figure3": float(np.median(drift)),
-    }
-
-
-def _drift(x, array, T, sigma_f, samples=10):
-    path = np.repeat(x[:, None], samples, axis=1)
-    path[..., :3] += T * np.arange(samples)[:, None] * path[..., 3:]
-    h = doppler_shift(path, array)
-    return np.abs(h.mean(axis=1) - h[:, 0]).max(axis=-1) / (sigma_f / samples**0.5)
-
-
-def _covariance():
-    """Return the variance of one axis as estimated from the maps of Fig 3, in three ways."""
-    p = reported().figure3
-    error = np.where(p.below, 0.0, p.error)
-    left, right = (panel[~np.isnan(panel)] ** 2 / 2 for panel in error)  # two axes, in a plane
-    return {
-        "covariance-from-figure3": Readings(
-            {
-                "mean, left map": float(left.mean()),
-                "mean, right map": float(right.mean()),
-                "median, left map": float(np.median(left)),
-            }
-        )
     }

@@ -1,97 +1,89 @@
 """Evidence on the signal chain: accuracy of the frequency estimate of a tone in noise."""
 
-import numpy as np
+from collections.abc import Callable
 
-from ...._hints import checked
-from ....evaluation.intervals import ConfidenceInterval, mean_interval, proportion_interval
-from ....replication.evidence import Readings
+import numpy as np
+from scipy.special import ndtr
+
+from ....evaluation.intervals import ConfidenceInterval, mean_interval
+from ....replication.choices import Choice
+from ....replication.evidence import sweep
 from ....signal.frequency import ml_frequency
 from ....signal.interpolation import peak_bin
-from ....signal.laws import (
-    crlb_frequency_std,
-    integrated_snr_for_std,
-    overlap_correlation,
-    window_for_std,
-)
+from ....signal.laws import crlb_frequency_std, overlap_correlation, window_for_std
 from ....signal.synthesis import tone
 from ..published import reported
 
 _RUNS = 4000
-_FS = 10e3  # Hz; the paper prints none. Ratios to the bound do not depend on it.
-_SNR_DB = 0.0  # where the paper says that the bound begins to be attained
+_FS = 10e3  # Hz; ratios to the bound do not depend on it
+_LEAST_DB = 0.0  # from which on the bound is attained, says the paper
+_ESTIMATORS = {"between the bins": ml_frequency, "highest bin": peak_bin}
 
 
-@checked
-def signal_evidence(rng: np.random.Generator) -> dict[str, object]:
-    """Return evidence by the id of the claim, see `evidence`."""
-    s = reported().scenario
-    snr = 10 ** (_SNR_DB / 10)
-    errors = {
-        f"{n} samples, {name}": (_errors(estimator, n, child), crlb_frequency_std(snr, n, _FS))
-        for (n, name, estimator), child in zip(
-            (
-                (10, "maximum of the periodogram", ml_frequency),
-                (100, "maximum of the periodogram", ml_frequency),
-                (1000, "maximum of the periodogram", ml_frequency),
-                (100, "highest bin", peak_bin),
-            ),
-            rng.spawn(4),
-            strict=True,
-        )
-    }
-    normal = errors["100 samples, maximum of the periodogram"]
-    rates = (10e3, 100e3, 1e6)
-    needed = [integrated_snr_for_std(s.sigma_f, s.T) / (rate * s.T) for rate in rates]
-    # Windows so long that the noise is as small as Section 4 sets it, every millisecond.
-    long = [s.T / window_for_std(s.sigma_f, snr * rate) for rate in rates]
+def signal_evidence(
+    choice: Callable[..., tuple[Choice, ...]], rng: np.random.Generator
+) -> dict[str, object]:
+    """Return evidence by the id of the claim, see `evidence`; choices are asked for by name."""
+    bound, normal, depends = rng.spawn(3)
     return {
-        "signal-bound": Readings(
-            {name: mean_interval((e / bound) ** 2) for name, (e, bound) in errors.items()}
+        "signal-bound": sweep(choice("window-samples", "peak"), _over_bound, bound),
+        "signal-normal": sweep(choice("snr", "window-samples", "peak"), _from_normal, normal),
+        "signal-depends": sweep(choice("dependence"), _doubled, depends),
+        "signal-variance": sweep(
+            choice("snr", "sampling-rate", "window"), lambda *values: _std(*values) ** 2
         ),
-        "signal-depends": _dependence(rng.spawn(3)),
-        "signal-normal": proportion_interval(np.abs(normal[0]) < 1.96 * normal[1]),
-        "signal-variance": Readings(
-            {
-                f"{1e3 * window:.0f} ms": float(
-                    crlb_frequency_std(snr, round(window * _FS), _FS) ** 2
-                )
-                for window in (0.001, 0.01, 0.1)
-            }
+        "signal-short": sweep(
+            choice("snr", "sampling-rate"), lambda *values: _std(*values, reported().scenario.T)
         ),
-        "signal-short": Readings(
-            {
-                f"{rate / 1e3:.0f} kHz": float(10 * np.log10(v))
-                for rate, v in zip(rates, needed, strict=True)
-            }
-        ),
-        "signal-white": Readings(
-            {
-                f"{r / 1e3:.0f} kHz": float(overlap_correlation(v))
-                for r, v in zip(rates, long, strict=True)
-            }
-        ),
+        "signal-white": sweep(choice("snr", "sampling-rate"), _remembered),
     }
 
 
-def _dependence(children):
-    """Return the variance ratios for twice the signal-to-noise ratio and for twice the length."""
-    settings = ((100, 10.0), (100, 10.0 + 10 * np.log10(2)), (200, 10.0))
-    usual, stronger, longer = (
-        _errors(ml_frequency, n, child, level) ** 2
-        for (n, level), child in zip(settings, children, strict=True)
-    )
-    return Readings({"ratio": _ratio(stronger, usual), "length": _ratio(longer, usual)})
+def _over_bound(rng, n, peak):
+    errors = _errors(_ESTIMATORS[peak], int(n), rng, _LEAST_DB)
+    return mean_interval((errors / crlb_frequency_std(_ratio(_LEAST_DB), int(n), _FS)) ** 2)
 
 
-def _ratio(some, others):
-    """Return the ratio of two means, with an interval by the logarithms of both."""
-    one, two = mean_interval(some), mean_interval(others)
+def _from_normal(rng, snr_db, n, peak):
+    """Return the distance between the distribution of errors and a normal one of their size."""
+    errors = np.sort(_errors(_ESTIMATORS[peak], int(n), rng, snr_db, 2000))
+    expected = ndtr((errors - errors.mean()) / errors.std())
+    steps = np.arange(len(errors) + 1) / len(errors)
+    distance = float(max((steps[1:] - expected).max(), (expected - steps[:-1]).max()))
+    # Dvoretzky, Kiefer and Wolfowitz: a distribution function of n draws is as near to its own.
+    reach = float(np.sqrt(np.log(2 / 0.05) / (2 * len(errors))))
+    return ConfidenceInterval(distance, max(0.0, distance - reach), distance + reach)
+
+
+def _doubled(rng, what):
+    """Return the ratio of variances if the signal-to-noise ratio or the length is doubled."""
+    n, level = (200, 10.0) if what == "length" else (100, 10.0 + 10 * np.log10(2))
+    usual, other = rng.spawn(2)
+    one = mean_interval(_errors(ml_frequency, n, other, level) ** 2)
+    two = mean_interval(_errors(ml_frequency, 100, usual, 10.0) ** 2)
     spread = np.hypot((one.high - one.value) / one.value, (two.high - two.value) / two.value)
     ratio = one.value / two.value
     return ConfidenceInterval(ratio, float(ratio * np.exp(-spread)), float(ratio * np.exp(spread)))
 
 
-def _errors(estimator, n, rng, snr_db=_SNR_DB):
+def _std(snr_db, rate, window):
+    """Return the least standard deviation of a frequency from a window, in Hz."""
+    return float(crlb_frequency_std(_ratio(snr_db), round(rate * window), rate))
+
+
+def _remembered(snr_db, rate):
+    """Return the largest correlation between shifts whose windows are as long as they must be."""
+    s = reported().scenario
+    lags = s.T * np.arange(1, s.samples)
+    window = window_for_std(s.sigma_f, _ratio(snr_db) * rate)
+    return float(np.abs(overlap_correlation(lags / window)).max())
+
+
+def _errors(estimator, n, rng, snr_db, runs=_RUNS):
     """Return errors in Hz, of tones at random places of the middle half of the spectrum."""
-    f = rng.uniform(-_FS / 4, _FS / 4, _RUNS)
+    f = rng.uniform(-_FS / 4, _FS / 4, runs)
     return estimator(tone(f, _FS, n, snr_db, rng=rng), _FS) - f
+
+
+def _ratio(level_db):
+    return 10 ** (level_db / 10)
