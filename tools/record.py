@@ -163,8 +163,14 @@ Seeds are the arguments of `numpy.random.default_rng` in its cells.
 
 ## {SEEDS}
 
-Random results change with the seed, verdicts must not. `make record` draws the noise behind every
-claim again with five other seeds, and fails if any verdict differs from the one on record.
+A verdict stands only if it stands for every reasonable value of what we chose, and for every way
+in which the text can be read. `data/<document>/choices.toml` declares them, each with a date and a
+reason that does not depend on the result; a row that they turn says at which value.
+
+Random results change with the seed, verdicts must not, and no limit is moved to make it so: where
+our runs are too few to tell, the verdict is that, and stands on the page. What is decided stays so
+on an interval of twice the width of 95 %. `make record` draws the noise behind every claim again
+with five other seeds, and fails if any verdict differs from the one on record.
 
 {table(("document", "seed", *VERDICTS), rows)}
 

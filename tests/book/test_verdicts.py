@@ -65,6 +65,15 @@ def test_every_verdict_in_the_prose_is_one_of_a_claim(page):
                 word(text)  # raises if there is none
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "book").glob("*.md")), ids=lambda path: path.stem)
+def test_a_page_of_text_prints_its_verdicts_too(path):
+    text, word = path.read_text(encoding="utf-8"), extension().word
+    for one in ROLE.findall(text):
+        word(one)
+    if ROLE.search(text):
+        assert TYPED.findall(re.sub(r"`[^`]*`", "", text)) == []
+
+
 def test_the_role_gives_the_verdict_on_record():
     name = documents()[0]
     claim = read_document(name).claims[0]
