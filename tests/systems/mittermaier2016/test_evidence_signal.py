@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from scipy.stats import norm
+from scipy.stats import kstest, norm
 
 from dopplerlib.systems import mittermaier2016 as paper
+from dopplerlib.systems.mittermaier2016.evidence import signal as evidence
 from dopplerlib.systems.mittermaier2016.evidence.chain import chain_evidence
-from dopplerlib.systems.mittermaier2016.evidence.signal import signal_evidence
 from tests.sweeps import narrowed
 
 S = paper.reported().scenario
@@ -29,7 +29,7 @@ ALL = {
 @pytest.fixture(scope="module")
 def found():
     choice = narrowed("mittermaier2016", **ALL)
-    return signal_evidence(choice, np.random.default_rng(1)) | chain_evidence(
+    return evidence.signal_evidence(choice, np.random.default_rng(1)) | chain_evidence(
         choice, np.random.default_rng(2)
     )
 
@@ -66,6 +66,16 @@ def test_errors_of_a_bin_are_uniform(found):
     outside = ours[0, 10, BINS[0]]
     assert outside.value > 0.2  # many peaks are of noise
     assert outside.high - outside.value == pytest.approx(0.0304, abs=1e-4)
+
+
+def test_the_distance_from_a_normal_law_is_that_of_kolmogorov_and_smirnov(monkeypatch):
+    """Of errors that are skewed: they differ more on one side than on the other."""
+    for sign in (1, -1):
+        errors = sign * np.random.default_rng(4).exponential(size=500)
+        monkeypatch.setattr(evidence, "_errors", lambda *_, errors=errors: errors)
+        ours = evidence._from_normal(np.random.default_rng(5), 0, 10, BINS[0])
+        scaled = (errors - errors.mean()) / errors.std()
+        assert ours.value == pytest.approx(kstest(scaled, "norm").statistic, rel=1e-9)
 
 
 def test_twice_the_power_halves_the_variance_and_twice_the_length_leaves_an_eighth(found):
