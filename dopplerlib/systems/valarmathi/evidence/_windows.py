@@ -12,8 +12,8 @@ from ._axes import swept
 
 LENGTHS = (3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 112)
 ACCELERATIONS, SNRS_DB = (5.0, 20.0, 40.0), (0.0, 20.0)
-BATCHES, RUNS = 8, 3
-PAIRS, MANY = (12, 16, 64, 96), 15  # two windows only, of which the shorter one fails at times
+BATCHES, RUNS = 8, 10
+PAIRS, MANY = (12, 16, 64, 96), 40  # two windows only, of which the shorter one fails at times
 _ALONG = {"acceleration": "acceleration", "signal-to-noise ratio in dB": "snr", "both": "both"}
 
 
