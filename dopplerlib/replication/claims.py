@@ -37,11 +37,11 @@ class Claim:
         Chapter that shows the number, and the cell of it where the claim is tried.
     test : str
         A test that computes the number by another route, as ``path::name``.
+    keys : tuple of str
+        Numbers or a few words by which its place is found in the document.
     kind : {"result", "assumption", "demand", "inference"}
         What the document, or in an inference this book, says it as. Only a result can be
         contradicted.
-    keys : tuple of str
-        Numbers or a few words by which its place is found in the document.
     premises : str
         What has to be so for the claim to be one; it is judged in a world in which it is. "" if
         there is nothing.
@@ -77,8 +77,8 @@ class Claim:
     page: str
     cell: str
     test: str
+    keys: tuple
     kind: str = "result"
-    keys: tuple = ()
     premises: str = ""
     weight: str = "finding"
     choices: tuple = ()
@@ -130,6 +130,8 @@ def check_claim(where: str, claim: Claim) -> None:
     for name in ("keys", "choices"):
         for one in _checks.instance(f"{name} of {where}", getattr(claim, name), tuple):
             _checks.text(f"{name} of {where}", one, least=1)
+    if not claim.keys:
+        raise ValueError(f"keys of {where} must say where it is found in the document, got none")
     verdicts = OF_RESULTS if claim.kind == "result" else OF_OTHERS
     for name, choices in (
         ("kind", KINDS),

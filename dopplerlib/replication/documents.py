@@ -149,11 +149,10 @@ def read_document(name: str) -> Document:
     """
     _checks.one_of("name", name, documents())
     own = data(name, "choices.toml")  # a document may have none of its own
-    sentences = data(name, "sentences.toml")
     return Document(
         name,
         read_claims(data_file(name, "claims.toml")),
         read_deviations(data_file(name, "deviations.toml")),
         read_choices(data("choices.toml")) + (read_choices(own) if own.is_file() else ()),
-        read_sentences(sentences) if sentences.is_file() else None,
+        read_sentences(data_file(name, "sentences.toml")),
     )

@@ -33,19 +33,6 @@ class Draws:
 
 
 @record
-class Readings:
-    """Evidence on an ambiguous claim: one piece for each interpretation.
-
-    Attributes
-    ----------
-    by_name : dict
-        A float, `ConfidenceInterval` or `Draws` for each reading.
-    """
-
-    by_name: dict
-
-
-@record
 class Sweep:
     """Evidence for every combination of choices, as `sweep` makes it.
 

@@ -34,7 +34,7 @@ class Scorecard:
     >>> from dopplerlib.replication.claims import Claim
     >>> from dopplerlib.replication.verdicts import judge
     >>> claim = Claim("pi", "Sec 1", "the circle's number", "number", "reproduced",
-    ...               "page", "cell", "test", published=3.14, rounding=0.005)
+    ...               "page", "cell", "test", ("3.14",), published=3.14, rounding=0.005)
     >>> Scorecard([judge(claim, 3.14159)]).counts
     {'reproduced': 1}
     """

@@ -128,7 +128,7 @@ def read_sentences(path: FileSource) -> Sentences:
     --------
     >>> from dopplerlib.replication.documents import data_file
     >>> read_sentences(data_file("sombatsatien", "sentences.toml")).lines
-    378
+    379
     """
     with _toml.tables(path) as file:
         _toml.check_names("the file", file, ("text", "sentence"))

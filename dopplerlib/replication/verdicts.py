@@ -12,7 +12,7 @@ from .._typing import ArrayLike
 from ..evaluation.intervals import ConfidenceInterval, proportion_interval
 from .choices import Choice, check_choice
 from .claims import OPEN, Claim, check_claim
-from .evidence import Draws, Readings, Sweep, combinations
+from .evidence import Draws, Sweep, combinations
 
 # Share of our runs that a typical draw leaves on either side of it.
 _TAIL = 0.025
@@ -152,7 +152,7 @@ def judge(claim: Claim, evidence: ArrayLike | Sweep, choices: Iterable[Choice] =
     --------
     >>> from dopplerlib.replication.claims import Claim
     >>> claim = Claim("pi", "Sec 1", "the circle's number", "number", "reproduced",
-    ...               "page", "cell", "test", published=3.14, rounding=0.005)
+    ...               "page", "cell", "test", ("3.14",), published=3.14, rounding=0.005)
     >>> judge(claim, 3.14159).verdict
     'reproduced'
     """
@@ -199,12 +199,13 @@ def judge_all(
 
     Examples
     --------
-    A count of 7 that 50 runs of ours spread about, and one that they do not reach:
+    A count of 7 that 500 runs of ours spread about, and one that they do not reach:
 
     >>> from dopplerlib.replication.claims import Claim
     >>> claims = [Claim(name, "Sec 1", "a count", "draw", "typical", "page", "cell", "test",
-    ...                 published=7.0) for name in ("near", "far")]
-    >>> evidence = {"near": Draws(np.arange(50.0)), "far": Draws(100 + np.arange(50.0))}
+    ...                 ("7",), published=7.0) for name in ("near", "far")]
+    >>> counts = np.arange(500) % 50
+    >>> evidence = {"near": Draws(counts), "far": Draws(100 + counts)}
     >>> [one.verdict for one in judge_all(claims, evidence)]
     ['typical', 'atypical']
     """
@@ -230,8 +231,6 @@ def _choice(claim, name, known):
 
 def _pieces(claim, evidence, axes):
     """Return the values of the choices, by their names, and the evidence for each of them."""
-    if isinstance(evidence, Readings):  # until every document has its choices declared
-        return [({"reading": name}, one) for name, one in evidence.by_name.items()]
     if not axes:
         return [({}, evidence)]
     if not isinstance(evidence, Sweep):

@@ -197,7 +197,7 @@ ITERATED = {
     "judge": lambda of: [judge(CLAIM, draws).verdict for draws in [Draws(of(range(50)), 7.0)] * 2],
     "Draws": lambda of: Draws(of([1.0, 2.0])),
 }  # fmt: skip
-CLAIM = Claim("a", "w", "s.", "draw", "typical", "p", "c", "t")
+CLAIM = Claim("a", "w", "s.", "draw", "typical", "p", "c", "t", ("k",))
 
 
 @pytest.mark.parametrize("of", [iter, lambda values: (one for one in values)])

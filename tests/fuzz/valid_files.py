@@ -50,6 +50,7 @@ verdict = "reproduced"
 page = "iq"
 cell = "peak"
 test = "tests/a.py::test_a"
+keys = ["5 Hz"]
 [[claim]]
 id = "below"
 where = "Fig 3"
@@ -62,6 +63,7 @@ note = "It does not."
 page = "iq"
 cell = "error"
 test = "tests/a.py::test_b"
+keys = ["1 m"]
 """
 DEVIATIONS = """\
 [[deviation]]

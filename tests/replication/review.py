@@ -11,7 +11,7 @@ import numpy as np
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.replication.choices import Choice
-from dopplerlib.replication.evidence import Draws, Readings, Sweep, combinations
+from dopplerlib.replication.evidence import Draws, Sweep, combinations
 from dopplerlib.replication.judgments import read_judgments
 from dopplerlib.replication.verdicts import _together, judge
 
@@ -110,8 +110,6 @@ def _at(evidence):
 
 
 def _pieces(evidence):
-    if isinstance(evidence, Readings):
-        return evidence.by_name.values()
     return evidence.points.values() if isinstance(evidence, Sweep) else [evidence]
 
 

@@ -13,6 +13,7 @@ form = "draw"
 published = 5.82
 rounding = 0.005
 verdict = "typical"
+keys = ["NIS"]
 unit = ""
 page = "figure6"
 cell = "nis"

@@ -72,7 +72,7 @@ def test_every_choice_was_tried_and_the_verdict_is_that_of_all(document):
     check_record(document)
 
 
-def test_verdicts(document, evidence):
+def test_the_judged_numbers_come_out_again(document, evidence):
     """If this fails: `make judge NAME=...`, and the reason in the commit."""
     check_numbers(document, evidence)
 

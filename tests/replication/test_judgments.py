@@ -20,7 +20,7 @@ from dopplerlib.replication.judgments import (
 )
 from dopplerlib.replication.verdicts import judge
 
-NUMBERS = Claim("pair", "Sec 1", "Two are. So", "number", "reproduced", "p", "c", "t",
+NUMBERS = Claim("pair", "Sec 1", "Two are. So", "number", "reproduced", "p", "c", "t", ("k",),
                 published=(1.0, 2.0), rounding=0.1)  # fmt: skip
 LIMIT = replace(NUMBERS, id="limit", form="relation", relation="<", published=1.0, page="q")
 RUN = replace(NUMBERS, id="run", form="draw", published=None, verdict="typical")

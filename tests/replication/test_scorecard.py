@@ -14,11 +14,11 @@ from dopplerlib.replication.verdicts import judge
 
 CLAIMS = {
     "nis": Claim("nis", "Fig 6", "NIS", "draw", "typical", "figure6", "nis-cell",
-                 "tests/x.py::test_nis", published=50.0),
+                 "tests/x.py::test_nis", ("k",), published=50.0),
     "limit": Claim("limit", "Sec 3", "$|x|$ small", "relation", "reproduced", "start", "x-cell",
-                   "tests/x.py::test_limit", published=0.3, unit="m", relation="<"),
+                   "tests/x.py::test_limit", ("k",), published=0.3, unit="m", relation="<"),
     "open": Claim("open", "Sec 4", "open", "number", "underdetermined", "ekf", "o-cell",
-                  "tests/x.py::test_open", published=2.0, note="The start is not told.",
+                  "tests/x.py::test_open", ("k",), published=2.0, note="The start is not told.",
                   choices=("start",)),
 }  # fmt: skip
 STARTS = {"this": 2.0, "that": 3.0, "other": 2.0}

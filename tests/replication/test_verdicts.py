@@ -15,7 +15,7 @@ from dopplerlib.replication.evidence import Draws, Sweep, combinations, sweep
 from dopplerlib.replication.verdicts import judge, judge_all
 
 NUMBER = Claim(
-    "a", "Sec 1", "a is", "number", "reproduced", "p", "c", "t", published=0.25,
+    "a", "Sec 1", "a is", "number", "reproduced", "p", "c", "t", ("k",), published=0.25,
     rounding=0.005,
 )  # fmt: skip
 LIMIT = replace(NUMBER, id="b", form="relation", relation="<", published=1.0)

@@ -15,6 +15,8 @@ def test_every_fault_can_still_be_made(name):
         text = (mutants.ROOT / one["file"]).read_text(encoding="utf-8")
         assert text.count(one["old"]) == 1, one["id"]
         assert one["new"] != one["old"], one["id"]
+        for test in one["tests"]:
+            assert (mutants.ROOT / test.split("::")[0]).exists(), one["id"]
 
 
 def test_a_fault_is_killed_by_a_test_that_fails_and_mended_afterwards(tmp_path):
