@@ -1,6 +1,6 @@
 """Errors of the simulation example with the ring turned, beside those with the ring as drawn.
 
-A minute on two processors. Every gate and start of the text, from the same noise, in parts.
+Three minutes on two processors. Every gate and start of the text, from the same noise, in parts.
 """
 
 import json
@@ -12,7 +12,7 @@ from dopplerlib.systems.mittermaier2016.evidence import other_motion
 from dopplerlib.systems.mittermaier2016.evidence._runs import GATES, starts
 
 FILES = (".json",)
-PARAMETERS = {"seed": 2016, "chunks": 8, "runs": 500, "angles": list(other_motion.ANGLES)}
+PARAMETERS = {"seed": 2016, "chunks": 24, "runs": 500, "angles": list(other_motion.ANGLES)}
 
 
 def items():

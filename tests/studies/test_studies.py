@@ -11,6 +11,7 @@ from types import ModuleType
 
 import pytest
 
+from dopplerlib.replication.documents import documents
 from studies import __main__ as command
 
 NAMES = command.names()
@@ -37,7 +38,8 @@ def test_every_result_has_a_study_and_every_study_its_results():
         study = import_module(f"studies.{name}")
         made |= {path.name for path in command.files(study, name)}
     there = {path.name for path in command.RESULTS.iterdir() if path.suffix != ".part"}
-    assert there == made | {"README.md"}
+    judged = {f"{name}.verdicts.json" for name in documents()}  # by `make judge`, of every document
+    assert there == made | judged | {"README.md"}
 
 
 def test_without_a_name_all_studies_are_listed(capsys):

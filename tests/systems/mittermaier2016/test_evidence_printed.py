@@ -182,6 +182,13 @@ def test_z_beside_the_larger_of_the_others(evidence, errors):
     np.testing.assert_allclose(evidence["final-errors-drawn"], errors[-1])
 
 
+def test_the_drawn_error_of_z_at_the_first_sample(evidence, errors):
+    """The curve's own first value; the file on the scene keeps it as well, typed apart."""
+    scene = json.loads((DATA / "fig6_geometry.json").read_text(encoding="utf-8"))["initial"]
+    assert evidence["first-z-error"] == pytest.approx(errors[0, 2])
+    assert evidence["first-z-error"] == pytest.approx(scene["sample1_abs_error_cm"]["z"])
+
+
 def test_moments_and_interval_of_chi_square(evidence):
     """Three squares of normal pairs: a gamma variable, whose moments and quantiles are known."""
     assert evidence["chi-square-mean"] == pytest.approx(6, abs=1e-5)

@@ -338,7 +338,9 @@ def test_parts_of_the_study_come_out_again_and_make_the_ratios():
 def test_what_the_tangent_misses_of_a_braking_target():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(other_motion, "_BRAKING", 6)
-        found = other_motion._decelerated(np.random.default_rng(15), 0.75, "Table 2", 0.3, "actual")
+        found = other_motion._decelerated(
+            np.random.default_rng(15), 0.75, "shared", "Table 2", 0.3, "actual"
+        )
     sensors, truth = textbook.ring(), textbook.path(301)
     # The speed falls evenly from the first sample on: the way is that of the mean speed.
     speed = np.linalg.norm(textbook.TRUTH[3:])

@@ -29,7 +29,7 @@ SETTINGS = [
 @pytest.fixture(scope="module")
 def evidence():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(tracking, "_RUNS", RUNS)
+        patch.setattr(tracking, "_RUNS", dict.fromkeys(GATES, RUNS))
         return tracking.tracking_evidence(np.random.default_rng(3))
 
 

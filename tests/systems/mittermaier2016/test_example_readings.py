@@ -1,6 +1,7 @@
 """What Fig 6 decides about the settings of its run, for another seed than the page's."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -121,3 +122,26 @@ def test_too_few_runs_are_refused():
         paper.example_readings(14, rng=np.random.default_rng(1))
     with pytest.raises(ValueError, match="rng must be"):
         paper.example_readings(15, rng=1)
+
+
+def test_numbers_that_describe_a_run_by_hand():
+    rng = np.random.default_rng(21)
+    nis, error = rng.chisquare(5, 1001), np.abs(rng.standard_normal((1001, 3)))
+    skipped = rng.random(1001) < 0.1
+    found = dict(zip(SUMMARIES, example_summary(error, nis, skipped), strict=True))
+    # Ends of chi-square with six degrees of freedom, from a printed table.
+    inside = sum(1.237 < one < 14.449 for one in nis) / 1001
+    away = np.log10(nis) - sum(np.log10(nis)) / 1001
+    memory = sum(a * b for a, b in pairwise(away)) / 1000 / (sum(away**2) / 1001)
+    small = sum(s and one < 6 for s, one in zip(skipped, nis, strict=True))
+    for name, expected in {
+        "average NIS": np.log10(sum(nis) / 1001),
+        "share of NIS inside": inside,
+        "NIS, first ten": np.log10(sum(nis[k] for k in range(10)) / 10),
+        "NIS, memory": memory,
+        "refused, too small": np.log(1 + small),
+        "refused, too large": np.log(1 + skipped.sum() - small),
+        "error of y, 50 to 150 ms": np.log10(np.sqrt(sum(error[50:150, 1] ** 2) / 100)),
+        "error of z, 950 to 1001 ms": np.log10(np.sqrt(sum(error[950:, 2] ** 2) / 51)),
+    }.items():
+        assert found[name] == pytest.approx(expected, rel=1e-9), name

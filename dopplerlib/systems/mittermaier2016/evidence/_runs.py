@@ -28,12 +28,12 @@ def choices(*names):
     return _paper().choice(*names)
 
 
-def tracked(z, array, start, P0, sigma_a=None, keep=()):
+def tracked(z, array, start, P0, sigma_a=None, noise="shared", keep=()):
     """Return the track from a start at the first sample, without a gate."""
     s = reported().scenario
     F, _ = constant_velocity(s.T, s.sigma_a)
     before = np.linalg.solve(F, start[..., None])[..., 0]
-    return ekf(z, array, before, P0, s.T, sigma_a or s.sigma_a, s.sigma_f, keep=keep)
+    return ekf(z, array, before, P0, s.T, sigma_a or s.sigma_a, s.sigma_f, noise, keep=keep)
 
 
 def example_runs(rng, names, runs, describe, keep, chunk=400):
@@ -42,6 +42,7 @@ def example_runs(rng, names, runs, describe, keep, chunk=400):
     `names` begins with gate and start, and may go on with the raised noise. Every combination has
     a generator of its own and is run once, however often it is asked for; `describe` makes a dict
     of arrays, runs first, of a few runs at a time, so that memory does not grow with their number.
+    `runs` is that number, or a dict with one for each gate.
     """
     values = list(product(*(one.values for one in choices(*names))))
     children = dict(zip(values, rng.spawn(len(values)), strict=True))
@@ -49,10 +50,11 @@ def example_runs(rng, names, runs, describe, keep, chunk=400):
     @cache
     def described(gate, start, raised="not raised"):
         child = children[(gate, start, raised)[: len(names)]]
+        number = runs if isinstance(runs, int) else runs[gate]
         parts = [
             describe(
                 run_example(
-                    min(chunk, runs - first),
+                    min(chunk, number - first),
                     rng=child,
                     gate=GATES[gate],
                     start=starts()[start],
@@ -60,7 +62,7 @@ def example_runs(rng, names, runs, describe, keep, chunk=400):
                     keep=keep,
                 )
             )
-            for first in range(0, runs, chunk)
+            for first in range(0, number, chunk)
         ]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 

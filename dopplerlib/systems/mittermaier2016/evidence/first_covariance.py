@@ -14,7 +14,7 @@ from ..published import reported
 from ..start import table2_starts
 from ._runs import choices, example_runs, starts, tracked
 
-_RUNS = 300
+_RUNS = 600
 _MATRICES = 2000
 _LATER = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)  # s, all that the choices of a moment name
 

@@ -26,7 +26,11 @@ def motion_evidence(rng: np.random.Generator) -> dict[str, object]:
     braking, turns = rng.spawn(2)
     return (
         _rotation()
-        | sweep(choices("deceleration", "start", "later", "whose-error"), _decelerated, braking)
+        | sweep(
+            choices("deceleration", "process-noise", "start", "later", "whose-error"),
+            _decelerated,
+            braking,
+        )
         | sweep(choices("turn-rate", "turning-noise"), _turning, turns)
     )
 
@@ -75,7 +79,7 @@ def _rotation():
     return sweep(choices("gate", "start", "angle", "whole-or-end"), ratios)
 
 
-def _decelerated(rng, deceleration, start, moment, whose):
+def _decelerated(rng, deceleration, noise, start, moment, whose):
     """Return the linearization error for a target that brakes all the time."""
     s = reported().scenario
     direction = s.x0[3:] / np.linalg.norm(s.x0[3:])
@@ -87,9 +91,8 @@ def _decelerated(rng, deceleration, start, moment, whose):
     z = doppler_shift(truth[: k + 1], s.array)
     z = z + s.sigma_f * rng.standard_normal((_BRAKING, *z.shape))
     # The process noise has to cover the deceleration, or the filter is wrong for another reason.
-    track = tracked(
-        z, s.array, starts()[start], s.P0, sigma_a=max(s.sigma_a, deceleration), keep=("P",)
-    )
+    sigma_a = max(s.sigma_a, deceleration)
+    track = tracked(z, s.array, starts()[start], s.P0, sigma_a, noise, keep=("P",))
     x, P = track.x[:, -1], track.P[:, -1]
     return {
         "constant-acceleration": quantile_interval(
