@@ -115,3 +115,10 @@ def test_the_tracks_end_where_the_thesis_says_up_to_sign_and_order():
 def test_the_person_creeps():
     v = np.hypot(*thesis.reported().scenario.tracks.velocity)
     assert v < thesis.reported().quoted.track.speed_limit
+
+
+def test_records_up_to_a_time_hold_the_scan_at_that_time():
+    records = thesis.simulate_radars(1, rng=np.random.default_rng(1), duration=2.0)
+    for end, scans in ((0.0, 1), (0.5, 6), (0.55, 6), (2.0, 21), (9.0, 21)):
+        cut = records.until(end)
+        assert len(cut.time) == len(cut.truth) == cut.z.shape[2] == cut.ranges.shape[1] == scans
