@@ -33,7 +33,8 @@ def signal_evidence(
             choice("snr", "sampling-rate", "window"), lambda *values: _std(*values) ** 2
         ),
         "signal-short": sweep(
-            choice("snr", "sampling-rate"), lambda *values: _std(*values, reported().scenario.T)
+            choice("snr", "sampling-rate"),
+            lambda snr, rate: _std(snr, rate, reported().scenario.T),
         ),
         "signal-white": sweep(choice("snr", "sampling-rate"), _remembered),
     }
