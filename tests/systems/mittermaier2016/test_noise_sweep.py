@@ -97,6 +97,14 @@ def test_every_reading_stays_in_its_box_and_approaches(velocity, axis):
         assert (x[:, 3] <= 0).all()
 
 
+@pytest.mark.parametrize("box", ["wide", "approaching", "region"])
+def test_no_wall_of_the_search_goes_through_a_place(box):
+    """The next one is at least two steps of the grid away: it would help the outermost places."""
+    low, high = np.array(getattr(paper.reported().figure4_study.ours.boxes, box))[:, :2]
+    places = grid_points()
+    assert (np.minimum(places - low, high - places) > 0.1 - 1e-9).all()
+
+
 def test_progress_goes_to_standard_error_and_only_if_it_is_wanted(capsys):
     rng = np.random.default_rng(1)
     paper.run_noise_sweep([30, 29], 1, rng=rng, reading=COARSE, progress=True)
