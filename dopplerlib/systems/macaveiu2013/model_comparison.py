@@ -30,7 +30,8 @@ def model_errors(runs: Runs, *, rng: np.random.Generator) -> dict[str, dict[str,
     runs: Number of independent records of each path.
     rng: Source of the measurement noise; all competitors see the same records.
     Returns (runs,): Root mean square error in m/s by the case ("Fig 7", "Fig 10", "Fig 11", "in the
-        turn", "before it") and the competitor.
+        turn", "before it") and the competitor with its constant; of two models the agile step and
+        the probability to stay.
 
     Examples
     --------
@@ -55,14 +56,14 @@ def model_errors(runs: Runs, *, rng: np.random.Generator) -> dict[str, dict[str,
 
 def _competitors(s):
     """Return a function from measurements to estimates for each competitor."""
-    made = {f"filter, w = {w:g}": partial(filter_vehicle, s=s.with_(w=w)) for w in STEPS}
+    made = {f"filter {w:g}": partial(filter_vehicle, s=s.with_(w=w)) for w in STEPS}
     for q in JERKS:
-        made[f"acceleration, q = {q:g}"] = partial(track_accelerating, q=q, a_max=_TURN)
+        made[f"acceleration {q:g}"] = partial(track_accelerating, q=q, a_max=_TURN)
     for w in AGILE:
         for stay in STAYS:
-            made[f"IMM, w = {w:g}, stay = {stay:g}"] = partial(_mixed, w=w, stay=stay)
+            made[f"IMM {w:g} / {stay:g}"] = partial(_mixed, w=w, stay=stay)
     for w in STEPS:
-        made[f"smoother, w = {w:g}"] = partial(_smoothed, s=s.with_(w=w))
+        made[f"smoother {w:g}"] = partial(_smoothed, s=s.with_(w=w))
     return made | {"measurement": lambda z: z}
 
 
