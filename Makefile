@@ -90,11 +90,6 @@ chapter: $(VENV)/.ready  ## execute the chapter NAME=... in place (all without i
 judge: $(VENV)/.ready  ## judge all claims (or those of NAME=...), and write what the book shows of it
 	$(PY) -m tools.judge $(NAME)
 
-# The faults that somebody could have made, one at a time; every test that should notice is run.
-.PHONY: mutants
-mutants: $(VENV)/.ready  ## break the library on purpose (as tests/mutants/NAME.toml says): minutes
-	$(PY) -m tools.mutants $(NAME)
-
 # NAME=valarmathi judges the claims of that document only, and executes no chapter.
 .PHONY: record
 record: $(VENV)/.ready  ## compare every byte of the chapters, judge all claims with five seeds

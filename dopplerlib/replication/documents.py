@@ -61,7 +61,7 @@ class Document:
 
         Parameters
         ----------
-        *names : str
+        *names : sequence of str
             Of choices.
 
         Returns
@@ -72,9 +72,14 @@ class Document:
         ------
         ValueError
             If there is no such choice.
+
+        Examples
+        --------
+        >>> read_document("mittermaier2016").choice("much-more")[0].values
+        (2.0, 10.0)
         """
         known = {one.id: one for one in self.choices}
-        return tuple(known[_checks.one_of("name", name, tuple(known))] for name in names)
+        return tuple(known[_checks.one_of("names", name, tuple(known))] for name in names)
 
 
 def documents() -> tuple[str, ...]:

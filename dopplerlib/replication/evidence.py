@@ -99,7 +99,7 @@ def sweep(
         The axes.
     function : callable
         ``function(*values)``, with a value of each choice, returns a piece of evidence, or a dict
-        of pieces by the ids of several claims.
+        of pieces by the ids of several claims; not checked here, but by `judge`.
     rng : numpy.random.Generator, optional
         ``function(child, *values)`` gets a generator of its own for each combination.
 

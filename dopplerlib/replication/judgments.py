@@ -81,7 +81,7 @@ def read_judgments(document: str) -> tuple[Judgment, ...]:
     >>> read_judgments("mittermaier2016")[0].claim.id
     'sensitivity'
     """
-    claims = read_document(document).claims
+    claims = read_document(_checks.one_of("document", document, documents())).claims
     found = read_json(f"{document}.verdicts.json", folder=results)["judgments"]
     return tuple(
         Judgment(

@@ -73,7 +73,7 @@ class Sentences:
         entries = _checks.records("entries", self.entries, Sentence)
         covered: set[int] = set()
         for place, one in enumerate(entries, 1):
-            _check_sentence(f"sentence {place}", one, lines)
+            _check_sentence(f"entries, sentence {place},", one, lines)
             covered |= set(range(one.lines[0], one.lines[1] + 1))
         if gaps := sorted(set(range(1, lines + 1)) - covered):
             raise ValueError(f"entries must cover every line, got none for line {gaps[0]}")
@@ -101,7 +101,19 @@ class Sentences:
         Returns
         -------
         tuple of Sentence
+
+        Raises
+        ------
+        ValueError
+            If `claim` is no text.
+
+        Examples
+        --------
+        >>> one = Sentence((1, 2), "Section 1", "The ring has six sensors.", claims=("ring",))
+        >>> Sentences(2, "00" * 32, [one]).of("ring")[0].where
+        'Section 1'
         """
+        _checks.text("claim", claim)
         return tuple(one for one in self.entries if claim in one.claims)
 
 
@@ -142,7 +154,7 @@ def read_sentences(path: FileSource) -> Sentences:
 
 
 def _check_sentence(where: str, one: Sentence, lines: int) -> None:
-    place = tuple(_checks.iterable(f"lines of {where}", one.lines))
+    place = _checks.instance(f"lines of {where}", one.lines, tuple)
     numbers = len(place) == 2 and all(map(_checks.is_whole, place))
     if not numbers or not 1 <= place[0] <= place[1] <= lines:
         raise ValueError(

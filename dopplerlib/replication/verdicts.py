@@ -11,7 +11,7 @@ from .._records import record
 from .._typing import ArrayLike
 from ..evaluation.intervals import ConfidenceInterval, proportion_interval
 from .choices import Choice, check_choice
-from .claims import OPEN, Claim, check_claim
+from .claims import OPEN, VERDICTS, Claim, check_claim
 from .evidence import Draws, Sweep, combinations
 
 # Share of our runs that a typical draw leaves on either side of it.
@@ -47,6 +47,11 @@ class Point:
         Share of our runs below the published one, in percent, with its Monte Carlo interval.
     beyond : bool
         Whether a value lies beyond its declared range, so that the verdict does not count.
+
+    Raises
+    ------
+    ValueError
+        If a field is of another kind, or not finite.
     """
 
     at: dict
@@ -55,6 +60,26 @@ class Point:
     published: float | tuple
     percentile: ConfidenceInterval | None = None
     beyond: bool = False
+
+    def __post_init__(self):
+        """Check the fields."""
+        for name, value in _checks.instance("at", self.at, dict).items():
+            _checks.text("at", name, least=1)
+            if not isinstance(value, str):
+                _checks.one_number(f"at {name}", value)
+        _checks.one_of("verdict", self.verdict, VERDICTS)
+        for name in ("ours", "percentile"):
+            value = getattr(self, name)
+            if isinstance(value, ConfidenceInterval):
+                _checks.finite(name, [value.value, value.low, value.high])
+            elif name == "ours":
+                _check_numbers(name, value)
+            elif value is not None:
+                raise ValueError(f"{name} must be a ConfidenceInterval, got {short(value)}")
+        _check_numbers("published", self.published)
+        if not isinstance(self.ours, ConfidenceInterval):
+            _checks.check_shape("published", np.asarray(self.published), np.shape(self.ours))
+        _checks.one_boolean("beyond", self.beyond)
 
 
 @record
@@ -69,11 +94,27 @@ class Judgment:
         See `judge`.
     points : tuple of Point
         For every combination of what the claim leaves open; one if it leaves nothing open.
+
+    Raises
+    ------
+    ValueError
+        If a field is of another kind, or no point lies inside the declared ranges.
     """
 
     claim: Claim
     verdict: str
     points: tuple
+
+    def __post_init__(self):
+        """Check the fields."""
+        check_claim("claim", self.claim)
+        _checks.one_of("verdict", self.verdict, VERDICTS)
+        points = _checks.records("points", self.points, Point)
+        if all(one.beyond for one in points):
+            raise ValueError("points must hold one inside the declared ranges, got none")
+        if len({tuple(one.at) for one in points}) > 1:
+            raise ValueError("points must be for the same choices, got others")
+        object.__setattr__(self, "points", points)
 
     @property
     def nearest(self) -> Point:
@@ -220,6 +261,11 @@ def judge_all(
         if name not in names:
             raise ValueError(f"evidence must belong to a claim, got {name!r}, which is none")
     return tuple(judge(claim, evidence[claim.id], choices) for claim in claims)
+
+
+def _check_numbers(name, value):
+    if not _checks.finite(name, value).size:
+        raise ValueError(f"{name} must be a number or more, got {short(value)}")
 
 
 def _choice(claim, name, known):

@@ -54,18 +54,25 @@ def fresh(call):
 
 def invoke(target, arguments):
     """Call the target; a record is used as well: compared, hashed, pickled, and read."""
-    arguments = dict(arguments)
-    result = target.function(**_spread(target.function, arguments))
+    several, arguments = _spread(target.function, dict(arguments))
+    result = target.function(*several, **arguments)
     if dataclasses.is_dataclass(result) and target.record:
         _use(result)
     return result
 
 
 def _spread(function, arguments):
+    """Return what is handed over by place and by name, for functions that take any number."""
+    before = []
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.VAR_KEYWORD and isinstance(arguments.get(name), dict):
             arguments |= arguments.pop(name)
-    return arguments
+        if parameter.kind is parameter.VAR_POSITIONAL and name in arguments:
+            values = arguments.pop(name)
+            before = [arguments.pop(one) for one in before]
+            return (*before, *(values if isinstance(values, tuple) else (values,))), arguments
+        before.append(name)
+    return (), arguments
 
 
 def _use(record):

@@ -17,7 +17,7 @@ _HOME = by_name(
         "algorithms": "ALGORITHMS AlgorithmRuns operations run_algorithms",
         "residual_noise": "residual_variance updated_residual",
         "error_measures": "run_measures",
-        "fusion_sweep": "FusionSweep saved_sweep",
+        "fusion_sweep": "FusionSweep saved_sweep sweep_cell",
         "fusion_study": "FusionStudy cell_measures failure_limit saved_failures saved_study "
         "study_cell study_table",
         "fusion": "FusedTrack ablation calibration error_correlation fuse_all fusion_errors "

@@ -36,6 +36,7 @@ from .fusion_study import study_cell as study_cell
 from .fusion_study import study_table as study_table
 from .fusion_sweep import FusionSweep as FusionSweep
 from .fusion_sweep import saved_sweep as saved_sweep
+from .fusion_sweep import sweep_cell as sweep_cell
 from .published import Reported as Reported
 from .published import reported as reported
 from .residual_noise import residual_variance as residual_variance
@@ -98,6 +99,7 @@ __all__ = [
     "saved_sweep",
     "study_cell",
     "study_table",
+    "sweep_cell",
     "updated_residual",
     "velocity_path",
     "window_table",

@@ -9,7 +9,7 @@ from ..._hints import Runs, checked
 from ..._records import record
 from ..._typing import BoolArray, FloatArray
 from ...signal.synthesis import iq_from_velocity
-from .error_measures import run_measures, titled
+from .error_measures import _titled, run_measures
 from .published import reported
 from .velocity_filter import VelocityTrack, _decibels, filter_velocity
 from .velocity_paths import PathName, VelocityPath, velocity_path
@@ -113,7 +113,7 @@ class AlgorithmRuns:
 
         Delays are in halves of the fixed window.
         """
-        return {name: titled(self.measures(number)) for number, name in ALGORITHMS.items()}
+        return {name: _titled(self.measures(number)) for number, name in ALGORITHMS.items()}
 
 
 @checked

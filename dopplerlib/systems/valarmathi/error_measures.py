@@ -64,7 +64,7 @@ def run_measures(
     return measures
 
 
-def titled(measures):
+def _titled(measures):
     """Return those of a table by their titles, delays in halves of the fixed window."""
     half = 1e3 * (reported().chosen.fixed_window - 1) / 2 * reported().stated.T
     return {

@@ -12,7 +12,7 @@ from ..._records import record
 from ..._typing import FloatArray
 from ...evaluation.intervals import ConfidenceInterval, proportion_interval
 from .algorithms import ALGORITHMS, AlgorithmRuns, Number, run_algorithms
-from .error_measures import MEASURES, titled
+from .error_measures import MEASURES, _titled
 from .published import reported
 from .velocity_filter import _decibels
 from .velocity_paths import PATHS, PathName
@@ -76,7 +76,7 @@ class FusionStudy:
         levels = self.snrs_db.tolist()
         j = levels.index(_checks.one_of("snr_db", snr_db, levels))
         return {
-            name: titled({m: self.of(m, path, number)[j] for m in self.measures})
+            name: _titled({m: self.of(m, path, number)[j] for m in self.measures})
             for number, name in ALGORITHMS.items()
         }
 
