@@ -1,11 +1,9 @@
 """Try many odd calls of one target with Hypothesis, and shrink what is found."""
 
 import contextlib
-import math
 import random
 import re
 import resource
-import time
 from collections import Counter
 from dataclasses import dataclass
 
@@ -19,7 +17,6 @@ from .oracle import Bad, baseline, judge
 
 MEMORY = 4 * 2**30  # bytes of address space that odd calls may use beside what is in use
 MOST_SHRUNK = 4
-LEAST = 10  # odd calls of each function, however long they take
 BATCH = 10  # odd calls that are drawn together: Hypothesis takes longer to begin than to draw
 OPTIONS = settings(
     deadline=None,
@@ -37,11 +34,8 @@ class Outcome:
     bad: tuple  # of str, one for each kind
 
 
-def fuzz(target, examples, seed=None, seconds=math.inf):
-    """Return the Outcome of `examples` odd calls; the same ones each time if `seed` is None.
-
-    Of a function that takes long, only as many as begin within some `seconds`, but a `LEAST`.
-    """
+def fuzz(target, examples, seed=None):
+    """Return the Outcome of `examples` odd calls; the same ones each time if `seed` is None."""
     if not target.parameters:
         return Outcome(Counter(), ())
     calls = target.calls
@@ -51,7 +45,6 @@ def fuzz(target, examples, seed=None, seconds=math.inf):
     for call in calls:
         if call.keys() != {"rng"}:  # nothing but a generator is taken for one
             baseline(target, call)
-    end = time.monotonic() + seconds
     counts, kinds = Counter(), {}
     strategy = odd_calls(calls)
 
@@ -59,8 +52,6 @@ def fuzz(target, examples, seed=None, seconds=math.inf):
     @given(st.tuples(*[strategy] * BATCH))
     def try_all(batch):
         for drawn in batch:
-            if time.monotonic() > end and counts.total() >= LEAST:
-                return
             kind, text = _try(target, drawn)
             counts["bad" if text else kind] += 1
             if text:

@@ -33,29 +33,15 @@ def central_filter(
 ) -> PositionTrack:
     """Track the person with one extended Kalman filter in the plane, fed by both radars.
 
-    Parameters
-    ----------
-    records : RadarRecords
-        What both radars measured. Each detection updates the state at its own time.
-    settings : FilterSettings
-        "modern" settings: their interval, R and gate are used. The covariance of the start is
+    records: What both radars measured. Each detection updates the state at its own time.
+    settings: "modern" settings: their interval, R and gate are used. The covariance of the start is
         that of the table `cartesian` of the scenario.
-    q : float, optional
-        Spectral density of the acceleration along x and y in m^2/s^3; that of the settings if None.
-    start : array_like, shape (..., 4), optional
-        State at the first scan; if None, the position that the first scan gives, in front of the
-        radars by at least the `start_y` of the scenario, at rest.
-
-    Returns
-    -------
-    PositionTrack
-        States after both radars' updates, at the time of the second one.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the second radar does not measure between
-        two scans of the first.
+    q: Spectral density of the acceleration along x and y in m^2/s^3; that of the settings if None.
+    start (..., 4): State at the first scan; if None, the position that the first scan gives, in
+        front of the radars by at least the `start_y` of the scenario, at rest.
+    Returns: States after both radars' updates, at the time of the second one.
+    Raises ValueError if an argument is not of the kind described, or the second radar does not
+        measure between two scans of the first.
 
     Notes
     -----
@@ -115,21 +101,11 @@ def table_3_2(
 ) -> PositionTrack:
     """Run the extended Kalman filter of Table 3.2 on bilaterated ranges and angles (Fig 3.5).
 
-    Parameters
-    ----------
-    records : RadarRecords
-        What both radars measured.
-    Q : array_like, shape (4, 4), optional
-        Covariance of the process noise; that of the scenario if None.
-    sigma_angle : float, optional
-        Standard deviation of the angle in rad; that of the scenario if None.
-    start : array_like, shape (..., 4), optional
-        State at the first scan; the first bilaterated position at rest if None.
-
-    Returns
-    -------
-    PositionTrack
-        Where the circles do not meet, the scan is left out.
+    records: What both radars measured.
+    Q (4, 4): Covariance of the process noise; that of the scenario if None.
+    sigma_angle: Standard deviation of the angle in rad; that of the scenario if None.
+    start (..., 4): State at the first scan; the first bilaterated position at rest if None.
+    Returns: Where the circles do not meet, the scan is left out.
 
     Notes
     -----
@@ -172,16 +148,9 @@ def table_3_2(
 def range_and_angle(x: PlaneStates) -> FloatArray:
     """Return distance from the origin and angle of states in the plane.
 
-    Parameters
-    ----------
-    x : array_like, shape (..., 4)
-        States [x, y, v_x, v_y] in m and m/s.
-
-    Returns
-    -------
-    ndarray, shape (..., 2)
-        In m and rad, zero along +x. They are those of `polar_radar_h` with the axes exchanged,
-        whose azimuth is zero along +y.
+    x (..., 4): States [x, y, v_x, v_y] in m and m/s.
+    Returns (..., 2): In m and rad, zero along +x. They are those of `polar_radar_h` with the axes
+        exchanged, whose azimuth is zero along +y.
 
     Examples
     --------
@@ -195,14 +164,8 @@ def range_and_angle(x: PlaneStates) -> FloatArray:
 def range_and_angle_jacobian(x: PlaneStates) -> FloatArray:
     """Return the derivative of `range_and_angle`, Eq 3.19.
 
-    Parameters
-    ----------
-    x : array_like, shape (..., 4)
-        States.
-
-    Returns
-    -------
-    ndarray, shape (..., 2, 4)
+    x (..., 4): States.
+    Returns (..., 2, 4)
 
     Examples
     --------

@@ -32,19 +32,10 @@ def usable_ranges(
 ) -> dict[str, ConfidenceInterval]:
     """Return the usable range of several trackers on the same records.
 
-    Parameters
-    ----------
-    records : RadarRecords
-        What both radars measured.
-    tracks : dict of str to PositionTrack
-        Trackers by label.
-    rng : numpy.random.Generator
-        Source of the resampling.
-
-    Returns
-    -------
-    dict of str to ConfidenceInterval
-        In m; infinite if the error stays below the limit.
+    records: What both radars measured.
+    tracks: Trackers by label.
+    rng: Source of the resampling.
+    Returns: In m; infinite if the error stays below the limit.
 
     Examples
     --------
@@ -72,23 +63,13 @@ def late_radar(
 ) -> dict[str, list[ConfidenceInterval]]:
     """Return position errors if the second radar measures later, known to the tracker or not.
 
-    Parameters
-    ----------
-    offsets : array_like, shape (M,)
-        How much later, in s, from 0 to one scan.
-    runs : int
-        Number of records for each offset.
-    rng : numpy.random.Generator
-        Source of the noise and of the resampling.
-    window : tuple of float
-        Time interval over which errors are averaged, in s.
-
-    Returns
-    -------
-    dict of str to list of ConfidenceInterval
-        Root mean square errors in m by tracker, one for each offset, with one scan a second.
-        Errors are taken at the time of the second radar's measurement if the tracker knows it,
-        and of the first one's if not.
+    offsets (M,): How much later, in s, from 0 to one scan.
+    runs: Number of records for each offset.
+    rng: Source of the noise and of the resampling.
+    window: Time interval over which errors are averaged, in s.
+    Returns: Root mean square errors in m by tracker, one for each offset, with one scan a second.
+        Errors are taken at the time of the second radar's measurement if the tracker knows it, and
+        of the first one's if not.
 
     Examples
     --------
@@ -139,22 +120,12 @@ def baseline_sweep(
 ) -> dict[str, list[ConfidenceInterval]]:
     """Return position errors of two trackers for several distances between the radars.
 
-    Parameters
-    ----------
-    baselines : array_like, shape (M,)
-        In m.
-    runs : int
-        Number of records for each.
-    rng : numpy.random.Generator
-        Source of the noise and of the resampling.
-    at, half_width : float
-        Errors are averaged from `at` - `half_width` to `at` + `half_width`, in s.
-
-    Returns
-    -------
-    dict of str to list of ConfidenceInterval
-        Root mean square errors in m by tracker, one for each baseline, with one scan a second and
-        "modern" settings.
+    baselines (M,): In m.
+    runs: Number of records for each.
+    rng: Source of the noise and of the resampling.
+    at, half_width: Errors are averaged from `at` - `half_width` to `at` + `half_width`, in s.
+    Returns: Root mean square errors in m by tracker, one for each baseline, with one scan a second
+        and "modern" settings.
 
     Examples
     --------
@@ -188,25 +159,14 @@ def rejected_scans(
 ) -> list[list[ConfidenceInterval]]:
     """Return the fraction of scans that the gate of a single filter rejects after a start at rest.
 
-    Parameters
-    ----------
-    starts : array_like, shape (M,)
-        How far in front of the origin the filter starts, in m; the person starts at the origin.
-    densities : array_like, shape (J,)
-        Spectral densities of the acceleration in m^2/s^3.
-    runs : int
-        Number of records; all combinations see the same.
-    rng : numpy.random.Generator
-        Source of the noise and of the resampling.
-    duration : float
-        Length of the records in s.
-    floor : tuple of float, or None
-        Least standard deviations in m and m/s; that of the scenario if None.
-
-    Returns
-    -------
-    list of list of ConfidenceInterval
-        Fractions of the scans of radar 2 that the gate rejected, for each start and density.
+    starts (M,): How far in front of the origin the filter starts, in m; the person starts at the
+        origin.
+    densities (J,): Spectral densities of the acceleration in m^2/s^3.
+    runs: Number of records; all combinations see the same.
+    rng: Source of the noise and of the resampling.
+    duration: Length of the records in s.
+    floor: Least standard deviations in m and m/s; that of the scenario if None.
+    Returns: Fractions of the scans of radar 2 that the gate rejected, for each start and density.
 
     Examples
     --------

@@ -27,30 +27,16 @@ def error_area(
 ) -> FloatArray:
     """Return the corners of the area in which a bilaterated position is expected (Fig 5.5).
 
-    Parameters
-    ----------
-    position : array_like, shape (2,), optional
-        True position in m; (0, 4) if None.
-    snr_db : float, optional
-        Signal-to-noise ratio of both radars in dB; that of the law at each range if None.
-    n_sigma : float, optional
-        Half the width of each ring in standard deviations; 3 if None.
-    baseline : float, optional
-        In m; 1 m if None.
-    points : int
-        Number of points on each of the four sides: 1 gives the corners, more the curved outline.
-
-    Returns
-    -------
-    ndarray, shape (4 points, 2)
-        Points in m, around the area: from the left corner to the far, the right and the near one
-        for a position in front.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a pair of rings does not meet in four
-        points.
+    position (2,): True position in m; (0, 4) if None.
+    snr_db: Signal-to-noise ratio of both radars in dB; that of the law at each range if None.
+    n_sigma: Half the width of each ring in standard deviations; 3 if None.
+    baseline: In m; 1 m if None.
+    points: Number of points on each of the four sides: 1 gives the corners, more the curved
+        outline.
+    Returns (4 points, 2): Points in m, around the area: from the left corner to the far, the right
+        and the near one for a position in front.
+    Raises ValueError if an argument is not of the kind described, or a pair of rings does not meet
+        in four points.
 
     Examples
     --------
@@ -80,23 +66,11 @@ def one_scan_bound(
 ) -> FloatArray:
     """Return the least covariance of a position from the two ranges of one scan.
 
-    Parameters
-    ----------
-    p : array_like, shape (..., 2)
-        True positions in m.
-    baseline : float, optional
-        In m; 1 m if None.
-
-    Returns
-    -------
-    ndarray, shape (..., 2, 2)
-        The bound of `range_crlb` with the noise that Eq 5.1 has at each range, in m^2: infinite or
-        NaN on the line through the radars, where ranges do not fix y.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described; see also `range_crlb`.
+    p (..., 2): True positions in m.
+    baseline: In m; 1 m if None.
+    Returns (..., 2, 2): The bound of `range_crlb` with the noise that Eq 5.1 has at each range, in
+        m^2: infinite or NaN on the line through the radars, where ranges do not fix y.
+    Raises ValueError if an argument is not of the kind described; see also `range_crlb`.
 
     Examples
     --------

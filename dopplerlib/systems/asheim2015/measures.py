@@ -22,19 +22,10 @@ LIMIT, AFTER, WINDOW = 1.0, 5.0, 1.0  # m, s, s
 def departure_times(updated: Booleans, time: Times, scans: Count = 10) -> FloatArray:
     """Return the time at which a track begins to lack accepted detections for many scans in a row.
 
-    Parameters
-    ----------
-    updated : array_like of bool, shape (..., K)
-        Whether a detection was used.
-    time : array_like, shape (K,)
-        Time of each scan in s.
-    scans : int
-        How many scans in a row make a departure.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Time of the first of these scans in s; infinite if there is no departure.
+    updated (..., K): Whether a detection was used.
+    time (K,): Time of each scan in s.
+    scans: How many scans in a row make a departure.
+    Returns (...): Time of the first of these scans in s; infinite if there is no departure.
 
     Examples
     --------
@@ -56,17 +47,9 @@ def position_errors(
 ) -> FloatArray:
     """Return the distance between estimated and true positions.
 
-    Parameters
-    ----------
-    p : array_like, shape (..., K, 2)
-        Estimates in m; NaN where there is none.
-    truth : array_like, shape (K, 2 or more)
-        True states, position first.
-
-    Returns
-    -------
-    ndarray, shape (..., K)
-        In m; NaN where there is no estimate.
+    p (..., K, 2): Estimates in m; NaN where there is none.
+    truth (K, 2 or more): True states, position first.
+    Returns (..., K): In m; NaN where there is no estimate.
 
     Examples
     --------
@@ -82,25 +65,11 @@ def position_errors(
 def rmse(error: Errors, time: Times, at: Real, half_width: Positive = 0.5) -> float:
     """Return the root mean square error over runs and half a second before and after a time.
 
-    Parameters
-    ----------
-    error : array_like, shape (runs, K)
-        Errors; NaN where there is no estimate.
-    time : array_like, shape (K,)
-        Time of each scan in s.
-    at : float
-        Time in s.
-    half_width : float
-        In s.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or there is no error so near.
+    error (runs, K): Errors; NaN where there is no estimate.
+    time (K,): Time of each scan in s.
+    at: Time in s.
+    half_width: In s.
+    Raises ValueError if an argument is not of the kind described, or there is no error so near.
 
     Examples
     --------
@@ -116,16 +85,8 @@ def rmse_interval(
 ) -> ConfidenceInterval:
     """Return `rmse` and its interval when runs are drawn with replacement.
 
-    Parameters
-    ----------
-    error, time, at, half_width
-        See `rmse`.
-    rng : numpy.random.Generator
-        Source of the draws.
-
-    Returns
-    -------
-    ConfidenceInterval
+    error, time, at, half_width: See `rmse`.
+    rng: Source of the draws.
 
     Examples
     --------
@@ -149,24 +110,11 @@ def rmse_ratio(
 ) -> ConfidenceInterval:
     """Return the root mean square error of one tracker over that of another on the same runs.
 
-    Parameters
-    ----------
-    a, b : array_like, shape (runs, K)
-        Errors of both.
-    time, at, half_width
-        See `rmse`.
-    rng : numpy.random.Generator
-        Source of the draws, in which both keep their runs together.
-
-    Returns
-    -------
-    ConfidenceInterval
-        Infinite where the errors of `b` are zero.
-
-    Raises
-    ------
-    ValueError
-        See `rmse`; or if `a` and `b` have different shapes.
+    a, b (runs, K): Errors of both.
+    time, at, half_width: See `rmse`.
+    rng: Source of the draws, in which both keep their runs together.
+    Returns: Infinite where the errors of `b` are zero.
+    Raises ValueError: See `rmse`; or if `a` and `b` have different shapes.
 
     Examples
     --------
@@ -191,29 +139,15 @@ def usable_range(
 ) -> FloatArray:
     """Return the distance from the origin at which the error of all runs exceeds a limit.
 
-    Parameters
-    ----------
-    error : array_like, shape (..., runs, K)
-        Position errors in m; NaN where there is no estimate.
-    time : array_like, shape (K,)
-        Time of each scan in s.
-    distance : array_like, shape (K,)
-        True distance from the origin in m.
-    limit : float
-        Error in m up to which a position is of use.
-    average : float
-        Time in s over which errors are averaged.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        The distance at which the moving average of the root mean square error over runs first is
-        above the limit; infinite if it never is.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or there are fewer than two scans.
+    error (..., runs, K): Position errors in m; NaN where there is no estimate.
+    time (K,): Time of each scan in s.
+    distance (K,): True distance from the origin in m.
+    limit: Error in m up to which a position is of use.
+    average: Time in s over which errors are averaged.
+    Returns (...): The distance at which the moving average of the root mean square error over runs
+        first is above the limit; infinite if it never is.
+    Raises ValueError if an argument is not of the kind described, or there are fewer than two
+        scans.
 
     Examples
     --------
@@ -234,17 +168,9 @@ def usable_interval(
 ) -> ConfidenceInterval:
     """Return `usable_range` and its interval when runs are drawn with replacement.
 
-    Parameters
-    ----------
-    error, time, distance
-        See `usable_range`.
-    rng : numpy.random.Generator
-        Source of the draws.
-
-    Returns
-    -------
-    ConfidenceInterval
-        In m; infinite where the error stays below the limit to the end.
+    error, time, distance: See `usable_range`.
+    rng: Source of the draws.
+    Returns: In m; infinite where the error stays below the limit to the end.
 
     Examples
     --------
@@ -271,24 +197,11 @@ def usable_ratio(
 ) -> ConfidenceInterval:
     """Return the usable range of one tracker over that of another on the same runs.
 
-    Parameters
-    ----------
-    a, b : array_like, shape (runs, K)
-        Errors of both in m.
-    time, distance, limit, average
-        See `usable_range`.
-    rng : numpy.random.Generator
-        Source of the draws, in which both keep their runs together.
-
-    Returns
-    -------
-    ConfidenceInterval
-        A range beyond the record counts as the last distance.
-
-    Raises
-    ------
-    ValueError
-        See `usable_range`; or if a usable range of `b` is zero.
+    a, b (runs, K): Errors of both in m.
+    time, distance, limit, average: See `usable_range`.
+    rng: Source of the draws, in which both keep their runs together.
+    Returns: A range beyond the record counts as the last distance.
+    Raises ValueError: See `usable_range`; or if a usable range of `b` is zero.
 
     Examples
     --------

@@ -26,17 +26,9 @@ def managed_tracks(
 ) -> list[ManagedTrack]:
     """Track one record with tracks that are started, confirmed and deleted.
 
-    Parameters
-    ----------
-    detections : array_like, shape (K, M, 2)
-        Range and range rate of each detection; NaN where there is none.
-    settings : FilterSettings
-        Settings of the filter of each track; the gate is that on NIS.
-
-    Returns
-    -------
-    list of ManagedTrack
-        Those that were ever confirmed.
+    detections (K, M, 2): Range and range rate of each detection; NaN where there is none.
+    settings: Settings of the filter of each track; the gate is that on NIS.
+    Returns: Those that were ever confirmed.
 
     Notes
     -----
@@ -70,25 +62,12 @@ def managed_tracks(
 def on_track(tracks: list[ManagedTrack], truth: Scans, scans: Reals, limit: Positive) -> bool:
     """Return whether one confirmed track follows the target through some scans.
 
-    Parameters
-    ----------
-    tracks : list of ManagedTrack
-        As `managed_tracks` returns them.
-    truth : array_like, shape (K,)
-        True range at each scan in m.
-    scans : array_like of int
-        The scans, in increasing order.
-    limit : float
-        Largest error of a range in m.
-
-    Returns
-    -------
-    bool
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a track is longer than the truth.
+    tracks: As `managed_tracks` returns them.
+    truth (K,): True range at each scan in m.
+    scans: The scans, in increasing order.
+    limit: Largest error of a range in m.
+    Raises ValueError if an argument is not of the kind described, or a track is longer than the
+        truth.
 
     Examples
     --------
@@ -110,23 +89,11 @@ def on_track(tracks: list[ManagedTrack], truth: Scans, scans: Reals, limit: Posi
 def false_tracks(tracks: list[ManagedTrack], truth: Scans, limit: Positive) -> int:
     """Return the number of confirmed tracks that do not follow the target.
 
-    Parameters
-    ----------
-    tracks : list of ManagedTrack
-        As `managed_tracks` returns them.
-    truth : array_like, shape (K,)
-        True range at each scan in m.
-    limit : float
-        A track is false if the median error of its range is larger than this, in m.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a track is longer than the truth.
+    tracks: As `managed_tracks` returns them.
+    truth (K,): True range at each scan in m.
+    limit: A track is false if the median error of its range is larger than this, in m.
+    Raises ValueError if an argument is not of the kind described, or a track is longer than the
+        truth.
 
     Examples
     --------
@@ -145,26 +112,12 @@ def pda_ranges(
 ) -> tuple[FloatArray, FloatArray]:
     """Run probabilistic data association in place of the nearest neighbor.
 
-    Parameters
-    ----------
-    detections : array_like, shape (..., K, M, 2)
-        Range and range rate of each detection; NaN where there is none.
-    settings : FilterSettings
-        Settings of the filter; the gate is that on NIS.
-    x0 : array_like, shape (..., 2)
-        State at the first scan.
-
-    Returns
-    -------
-    x : ndarray, shape (..., K, 2)
-        Estimates.
-    missed : ndarray, shape (..., K)
-        Probability that no detection is of the target; NaN at the first scan.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or there is no scan.
+    detections (..., K, M, 2): Range and range rate of each detection; NaN where there is none.
+    settings: Settings of the filter; the gate is that on NIS.
+    x0 (..., 2): State at the first scan.
+    Returns x (..., K, 2): Estimates.
+        missed (..., K): Probability that no detection is of the target; NaN at the first scan.
+    Raises ValueError if an argument is not of the kind described, or there is no scan.
 
     Examples
     --------

@@ -25,12 +25,8 @@ Law = Annotated[Callable[..., Any], _checks.function]  # signal-to-noise ratio i
 def resolutions() -> tuple[float, float]:
     """Return the resolutions in range and in velocity, Eqs 5.3 and 5.5 with correct exponents.
 
-    Returns
-    -------
-    range_resolution : float
-        c T_pulse / 2 in m.
-    velocity_resolution : float
-        Half a wavelength over the time of integration in m/s.
+    Returns range_resolution: c T_pulse / 2 in m.
+        velocity_resolution: Half a wavelength over the time of integration in m/s.
 
     Examples
     --------
@@ -46,20 +42,9 @@ def resolutions() -> tuple[float, float]:
 def snr(d: Ranges) -> FloatArray:
     """Return the signal-to-noise ratio at a range, Eq 5.1.
 
-    Parameters
-    ----------
-    d : array_like, shape (...)
-        Range in m.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        In dB.
-
-    Raises
-    ------
-    ValueError
-        If `d` is not finite or beyond 240 m.
+    d (...): Range in m.
+    Returns (...): In dB.
+    Raises ValueError if `d` is not finite or beyond 240 m.
 
     Examples
     --------
@@ -74,22 +59,10 @@ def snr(d: Ranges) -> FloatArray:
 def noise_std(d: Ranges, law: Law | None = None) -> FloatArray:
     """Return the standard deviations of range and range rate at a range, Eqs 5.4 and 5.6.
 
-    Parameters
-    ----------
-    d : array_like, shape (...)
-        Range in m.
-    law : callable, optional
-        Signal-to-noise ratio in dB as a function of the range; that of Eq 5.1 if None.
-
-    Returns
-    -------
-    ndarray, shape (..., 2)
-        In m and m/s.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or a range is beyond 240 m.
+    d (...): Range in m.
+    law: Signal-to-noise ratio in dB as a function of the range; that of Eq 5.1 if None.
+    Returns (..., 2): In m and m/s.
+    Raises ValueError if an argument is not of the kind described, or a range is beyond 240 m.
 
     Examples
     --------

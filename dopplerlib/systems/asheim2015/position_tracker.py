@@ -21,20 +21,12 @@ Used = Annotated[BoolArray, exactly(None, 2, None, check=_checks.booleans)]
 class PositionTrack:
     """Estimated positions, and what they come from.
 
-    Attributes
-    ----------
-    p : ndarray, shape (runs, K, 2)
-        Estimated positions in m.
-    valid : ndarray of bool, shape (runs, K)
-        Whether the circles met; always True for a filter in the plane.
-    updated : ndarray of bool, shape (runs, 2, K)
-        Whether each radar's detection was used.
-    x : ndarray, shape (runs, K, 4), or None
-        States of the filter in the plane, if there is one.
-    P : ndarray, shape (runs, K, 4, 4), or None
-        Their covariances.
-    nis : ndarray, shape (runs, 2, K), or None
-        Normalized innovation squared for each radar.
+    p (runs, K, 2): Estimated positions in m.
+    valid (runs, K): Whether the circles met; always True for a filter in the plane.
+    updated (runs, 2, K): Whether each radar's detection was used.
+    x (runs, K, 4): States of the filter in the plane, if there is one.
+    P (runs, K, 4, 4): Their covariances.
+    nis (runs, 2, K): Normalized innovation squared for each radar.
     """
 
     p: Annotated[FloatArray, shaped(None, 2, check=_checks.measured)]
@@ -49,19 +41,10 @@ class PositionTrack:
 def clipped_bilateration(d1: Array, d2: Array, baseline: Positive) -> tuple[FloatArray, BoolArray]:
     """Return positions from two ranges, with y = 0 where the circles do not meet.
 
-    Parameters
-    ----------
-    d1, d2 : array_like, shape (...)
-        Ranges in m.
-    baseline : float
-        Distance between the radars in m.
-
-    Returns
-    -------
-    p : ndarray, shape (..., 2)
-        In m; NaN where a range is missing.
-    valid : ndarray of bool, shape (...)
-        Whether the circles met.
+    d1, d2 (...): Ranges in m.
+    baseline: Distance between the radars in m.
+    Returns p (..., 2): In m; NaN where a range is missing.
+        valid (...): Whether the circles met.
 
     Notes
     -----
@@ -89,27 +72,13 @@ def filter_then_bilaterate(
 ) -> PositionTrack:
     """Filter each radar by itself and bilaterate the estimates: the thesis's system.
 
-    Parameters
-    ----------
-    records : RadarRecords
-        What both radars measured.
-    settings : FilterSettings
-        How each filter is set.
-    advance : bool
-        Whether the first radar's estimate is moved on to the time of the second one's.
-    track : RangeTrack, optional
-        What `track_ranges` returned for these records, if that is known already.
-    doppler : bool
-        See `track_ranges`.
-
-    Returns
-    -------
-    PositionTrack
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or `track` is that of other records.
+    records: What both radars measured.
+    settings: How each filter is set.
+    advance: Whether the first radar's estimate is moved on to the time of the second one's.
+    track: What `track_ranges` returned for these records, if that is known already.
+    doppler: See `track_ranges`.
+    Raises ValueError if an argument is not of the kind described, or `track` is that of other
+        records.
 
     Examples
     --------
@@ -133,16 +102,9 @@ def filter_then_bilaterate(
 def raw_positions(records: RadarRecords, updated: Used | None = None) -> PositionTrack:
     """Bilaterate the measurements as they are, without a filter.
 
-    Parameters
-    ----------
-    records : RadarRecords
-        What both radars measured.
-    updated : array_like of bool, shape (runs, 2, K), optional
-        Take only these detections: the blue curves of Fig 5.10 have been through the gate.
-
-    Returns
-    -------
-    PositionTrack
+    records: What both radars measured.
+    updated (runs, 2, K): Take only these detections: the blue curves of Fig 5.10 have been through
+        the gate.
 
     Examples
     --------

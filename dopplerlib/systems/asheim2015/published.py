@@ -14,14 +14,9 @@ from ...replication.published import Published, read_published
 class Reported:
     """All that the thesis states and a computer can use.
 
-    Attributes
-    ----------
-    scenario : Published
-        Settings, in m, s, Hz and dB: those of the thesis, and where it has none, ours.
-    quoted : Published
-        Results that it says in words and numbers.
-    sources : dict of str to str
-        Where each of them stands, and how it was obtained.
+    scenario: Settings, in m, s, Hz and dB: those of the thesis, and where it has none, ours.
+    quoted: Results that it says in words and numbers.
+    sources: Where each of them stands, and how it was obtained.
     """
 
     scenario: Published
@@ -32,10 +27,6 @@ class Reported:
 @cache
 def reported() -> Reported:
     """Return the values that the thesis states.
-
-    Returns
-    -------
-    Reported
 
     Examples
     --------

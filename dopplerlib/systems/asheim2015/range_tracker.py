@@ -23,20 +23,13 @@ Starts = Annotated[FloatArray, shaped(2, check=_near)]
 class RangeTrack:
     """Estimates of one radar's filter, and the detections that it used.
 
-    Attributes
-    ----------
-    x : ndarray, shape (..., K, 2)
-        Estimates of range in m and range rate in m/s.
-    P : ndarray, shape (..., K, 2, 2)
-        Their covariances as the filter reports them.
-    chosen : ndarray, shape (..., K, 2)
-        The detection that was used; NaN where none was.
-    updated : ndarray of bool, shape (..., K)
-        Whether a detection was used. One that starts the track counts as used; a start without
-        one does not.
-    nis : ndarray, shape (..., K)
-        Least normalized innovation squared of the detections, inside the gate or not; NaN where
-        there was no detection, and at the first scan.
+    x (..., K, 2): Estimates of range in m and range rate in m/s.
+    P (..., K, 2, 2): Their covariances as the filter reports them.
+    chosen (..., K, 2): The detection that was used; NaN where none was.
+    updated (..., K): Whether a detection was used. One that starts the track counts as used; a
+        start without one does not.
+    nis (..., K): Least normalized innovation squared of the detections, inside the gate or not; NaN
+        where there was no detection, and at the first scan.
     """
 
     x: Annotated[FloatArray, shaped(None, 2)]
@@ -58,34 +51,20 @@ def track_ranges(
 ) -> RangeTrack:
     """Run gate, nearest neighbor and Kalman filter over records of one radar.
 
-    Parameters
-    ----------
-    detections : array_like, shape (..., K, M, 2)
-        Range in m and range rate in m/s of up to M detections in each of K scans; NaN where there
-        is none.
-    settings : FilterSettings
-        Settings of the filter, see `filter_settings`.
-    doppler : bool
-        Whether the range rate updates the filter. The box looks at it in any case, as in the
+    detections (..., K, M, 2): Range in m and range rate in m/s of up to M detections in each of K
+        scans; NaN where there is none.
+    settings: Settings of the filter, see `filter_settings`.
+    doppler: Whether the range rate updates the filter. The box looks at it in any case, as in the
         code; a gate on NIS only if it updates.
-    association : {"gate-first", "nearest-first"}
-        "gate-first": the nearest of the detections inside the gate, by NIS, as the text says;
-        "nearest-first": the nearest in range alone, dropped if it is outside, as the code does.
-    reuse_first : bool
-        Whether the first detection starts the filter and then updates it once more, as the code
-        does. If not, it only starts it.
-    x0 : array_like, shape (2,) or (..., 2), optional
-        Start where the first scan is empty. No detection counts as used there.
-
-    Returns
-    -------
-    RangeTrack
-
-    Raises
-    ------
-    ValueError
-        If a shape or a name does not fit, there is no scan or no room for a detection, a first
-        scan is empty and no `x0` is given, or numbers are too large for a filter.
+    association: "gate-first": the nearest of the detections inside the gate, by NIS, as the text
+        says; "nearest-first": the nearest in range alone, dropped if it is outside, as the code
+        does.
+    reuse_first: Whether the first detection starts the filter and then updates it once more, as the
+        code does. If not, it only starts it.
+    x0 (2,) or (..., 2): Start where the first scan is empty. No detection counts as used there.
+    Raises ValueError if a shape or a name does not fit, there is no scan or no room for a
+        detection, a first scan is empty and no `x0` is given, or numbers are too large for a
+        filter.
 
     Notes
     -----

@@ -40,25 +40,13 @@ Offset = Annotated[float, partial(_checks.one_number, check=_short)]
 class RadarRecords:
     """Simulated records of both radars.
 
-    Attributes
-    ----------
-    time : ndarray, shape (K,)
-        Time of each scan in s.
-    truth : ndarray, shape (K, 4)
-        True states [x, y, v_x, v_y] in m and m/s.
-    sensors : ndarray, shape (2, 2)
-        Positions of the radars in m.
-    ranges : ndarray, shape (2, K, 2)
-        True range and range rate for each radar, at the times when it measures.
-    z : ndarray, shape (runs, 2, K, 2)
-        Measured range in m and range rate in m/s; NaN where nothing was detected.
-    offset : float
-        How much later than the first radar the second one measures, in s.
-
-    Raises
-    ------
-    ValueError
-        If a field is not of the kind described, or their lengths do not agree.
+    time (K,): Time of each scan in s.
+    truth (K, 4): True states [x, y, v_x, v_y] in m and m/s.
+    sensors (2, 2): Positions of the radars in m.
+    ranges (2, K, 2): True range and range rate for each radar, at the times when it measures.
+    z (runs, 2, K, 2): Measured range in m and range rate in m/s; NaN where nothing was detected.
+    offset: How much later than the first radar the second one measures, in s.
+    Raises ValueError if a field is not of the kind described, or their lengths do not agree.
 
     Examples
     --------
@@ -125,19 +113,9 @@ class RadarRecords:
 def radar_positions(baseline: Baseline | None = None) -> FloatArray:
     """Return the positions of the two radars on the x axis.
 
-    Parameters
-    ----------
-    baseline : float, optional
-        Their distance in m; that of the simulation, 1 m, if None.
-
-    Returns
-    -------
-    ndarray, shape (2, 2)
-
-    Raises
-    ------
-    ValueError
-        If `baseline` is not positive, or beyond 20 m.
+    baseline: Their distance in m; that of the simulation, 1 m, if None.
+    Returns (2, 2)
+    Raises ValueError if `baseline` is not positive, or beyond 20 m.
 
     Examples
     --------
@@ -152,19 +130,9 @@ def radar_positions(baseline: Baseline | None = None) -> FloatArray:
 def straight_track(time: Times) -> FloatArray:
     """Return the states on the straight track of Fig 5.1(a).
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Times in s.
-
-    Returns
-    -------
-    ndarray, shape (K, 4)
-
-    Raises
-    ------
-    ValueError
-        If a time is not finite or beyond 1e60.
+    time (K,): Times in s.
+    Returns (K, 4)
+    Raises ValueError if a time is not finite or beyond 1e60.
 
     Examples
     --------
@@ -182,21 +150,11 @@ def maneuver_track(time: Times, turn: tuple[Real, Real] | None = None) -> FloatA
     Of the code only the parameters are in our text: a counter-clockwise turn between 10 and 20 s.
     That its rate is constant is an inference.
 
-    Parameters
-    ----------
-    time : array_like, shape (K,)
-        Times in s.
-    turn : tuple of float, optional
-        When the turn begins and ends in s; the parameters of the code if None.
-
-    Returns
-    -------
-    ndarray, shape (K, 4)
-
-    Raises
-    ------
-    ValueError
-        If a time is not finite or beyond 1e60, or the turn does not begin before it ends.
+    time (K,): Times in s.
+    turn: When the turn begins and ends in s; the parameters of the code if None.
+    Returns (K, 4)
+    Raises ValueError if a time is not finite or beyond 1e60, or the turn does not begin before it
+        ends.
 
     Examples
     --------
@@ -227,22 +185,11 @@ def maneuver_track(time: Times, turn: tuple[Real, Real] | None = None) -> FloatA
 def scan_times(T: Positive | None = None, duration: Positive | None = None) -> FloatArray:
     """Return the times of all scans of the simulation.
 
-    Parameters
-    ----------
-    T : float, optional
-        Sampling interval in s; that of the thesis if None.
-    duration : float, optional
-        Time of the last scan in s; that of the thesis if None.
-
-    Returns
-    -------
-    ndarray, shape (K,)
-
-    Raises
-    ------
-    ValueError
-        If the record is shorter than one interval, longer than 100 s, or has more than a million
-        scans.
+    T: Sampling interval in s; that of the thesis if None.
+    duration: Time of the last scan in s; that of the thesis if None.
+    Returns (K,)
+    Raises ValueError if the record is shorter than one interval, longer than 100 s, or has more
+        than a million scans.
 
     Examples
     --------
@@ -277,44 +224,23 @@ def simulate_radars(
 ) -> RadarRecords:
     """Return records of both radars, as Appendix A simulates them.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records.
-    rng : numpy.random.Generator
-        Source of the noise; every run draws from a child of its own.
-    track : callable
-        States (K, 4) as a function of times (K,).
-    T : float, optional
-        Sampling interval in s; 0.1 s if None.
-    duration : float, optional
-        Length of the record in s; 50 s if None.
-    baseline : float, optional
-        Distance between the radars in m; 1 m if None.
-    law : callable, optional
-        Signal-to-noise ratio in dB as a function of the range; Eq 5.1 if None.
-    rate : {"difference", "exact"}
-        "difference": the range rate is the difference of the range to the next scan over T, as in
+    runs: Number of independent records.
+    rng: Source of the noise; every run draws from a child of its own.
+    track: States (K, 4) as a function of times (K,).
+    T: Sampling interval in s; 0.1 s if None.
+    duration: Length of the record in s; 50 s if None.
+    baseline: Distance between the radars in m; 1 m if None.
+    law: Signal-to-noise ratio in dB as a function of the range; Eq 5.1 if None.
+    rate: "difference": the range rate is the difference of the range to the next scan over T, as in
         Appendix A.3; "exact": it is that of the instant.
-    correlated : int
-        Number of scans that an integration spans: neighboring scans have the noise of the
+    correlated: Number of scans that an integration spans: neighboring scans have the noise of the
         overlap in common. 1 is white noise.
-    offset : float
-        How much later than the first radar the second one measures, in s.
-    false_alarm : float, optional
-        If given, a scan has a detection only with the probability that a threshold with this
-        probability of a false alarm leaves at the signal-to-noise ratio there, and is NaN
+    offset: How much later than the first radar the second one measures, in s.
+    false_alarm: If given, a scan has a detection only with the probability that a threshold with
+        this probability of a false alarm leaves at the signal-to-noise ratio there, and is NaN
         otherwise. If None, as in the thesis, each scan has one, however weak the echo.
-
-    Returns
-    -------
-    RadarRecords
-
-    Raises
-    ------
-    ValueError
-        If an argument is not of the kind described, or the records would have more than ten million
-        scans.
+    Raises ValueError if an argument is not of the kind described, or the records would have more
+        than ten million scans.
 
     Examples
     --------
@@ -358,21 +284,11 @@ def noisy_positions(
 ) -> tuple[FloatArray, FloatArray]:
     """Return a track with the noise of Eq 5.7, whose size depends on the distance from the origin.
 
-    Parameters
-    ----------
-    track : callable
-        States (K, 4) as a function of times (K,).
-    T : float, optional
-        Sampling interval in s; 0.1 s if None.
-    rng : numpy.random.Generator
-        Source of the noise.
-    same : bool
-        Whether x and y get the same random number, as Eq 5.7 is printed, or one each.
-
-    Returns
-    -------
-    truth, noisy : ndarray, shape (K, 2)
-        In m.
+    track: States (K, 4) as a function of times (K,).
+    T: Sampling interval in s; 0.1 s if None.
+    rng: Source of the noise.
+    same: Whether x and y get the same random number, as Eq 5.7 is printed, or one each.
+    Returns truth, noisy (K, 2): In m.
 
     Examples
     --------

@@ -20,27 +20,16 @@ Symmetric = Annotated[FloatArray, exactly(2, 2)]
 class FilterSettings:
     """Settings of one radar's filter.
 
-    Attributes
-    ----------
-    name : {"text", "code", "modern"}
-        Whose settings they are.
-    T : float
-        Sampling interval in s.
-    Q : ndarray, shape (2, 2)
-        Covariance of the process noise of [range, velocity].
-    variances : ndarray, shape (2,), or None
-        Variances of range in m^2 and velocity in m^2/s^2; those of the noise law at the predicted
-        range if None.
-    floor : ndarray, shape (2,)
-        Least standard deviations in m and m/s, added in squares to those of the law.
-    box : ndarray, shape (2,)
-        Half-widths of the fixed gate in m and m/s.
-    gate : {"box", "nis", None}
-        Which gate is used.
-    gate_probability : float
-        Probability of a detection of the target to be inside the gate on NIS.
-    P0 : ndarray, shape (2, 2)
-        Covariance with which the filter starts.
+    name: Whose settings they are.
+    T: Sampling interval in s.
+    Q (2, 2): Covariance of the process noise of [range, velocity].
+    variances (2,): Variances of range in m^2 and velocity in m^2/s^2; those of the noise law at the
+        predicted range if None.
+    floor (2,): Least standard deviations in m and m/s, added in squares to those of the law.
+    box (2,): Half-widths of the fixed gate in m and m/s.
+    gate: Which gate is used.
+    gate_probability: Probability of a detection of the target to be inside the gate on NIS.
+    P0 (2, 2): Covariance with which the filter starts.
 
     Examples
     --------
@@ -77,27 +66,12 @@ def filter_settings(
 ) -> FilterSettings:
     """Return the settings of one radar's filter.
 
-    Parameters
-    ----------
-    name : {"text", "code", "modern"}
-        The settings of the thesis's text (Sec 5.5.1), those of its code (Appendix A), or ours.
-    T : float, optional
-        Sampling interval in s; that of the simulation, 0.1 s, if None.
-    q : float, optional
-        For "modern": spectral density of the acceleration in m^2/s^3.
-    floor : array_like, shape (2,), optional
-        For "modern": least standard deviations in m and m/s; (0, 0) for none.
-    gate : {"own", "box", "nis", None}
-        Another gate than the settings' own, which is the box for text and code.
-
-    Returns
-    -------
-    FilterSettings
-
-    Raises
-    ------
-    ValueError
-        If a name is not known or a number not positive.
+    name: The settings of the thesis's text (Sec 5.5.1), those of its code (Appendix A), or ours.
+    T: Sampling interval in s; that of the simulation, 0.1 s, if None.
+    q: For "modern": spectral density of the acceleration in m^2/s^3.
+    floor (2,): For "modern": least standard deviations in m and m/s; (0, 0) for none.
+    gate: Another gate than the settings' own, which is the box for text and code.
+    Raises ValueError if a name is not known or a number not positive.
 
     Notes
     -----

@@ -22,20 +22,12 @@ ECHOES, CLUTTER, GHOSTS = 3, 3, 4  # most false or further detections of a kind 
 class SurrogateWalk:
     """A simulated walk and the detections of the radars.
 
-    Attributes
-    ----------
-    time : ndarray, shape (K,)
-        Time of each scan in s.
-    truth : ndarray, shape (K, 4)
-        True states in m and m/s.
-    sensors : ndarray, shape (N, 2)
-        Positions of the radars in m.
-    ranges : ndarray, shape (N, K, 2)
-        True range and range rate for each radar.
-    visible : ndarray of bool, shape (N, K)
-        Whether the target is inside the window of the radar, and moves.
-    detections : ndarray, shape (runs, N, K, M, 2)
-        Range and range rate of each detection; NaN where there is none.
+    time (K,): Time of each scan in s.
+    truth (K, 4): True states in m and m/s.
+    sensors (N, 2): Positions of the radars in m.
+    ranges (N, K, 2): True range and range rate for each radar.
+    visible (N, K): Whether the target is inside the window of the radar, and moves.
+    detections (runs, N, K, M, 2): Range and range rate of each detection; NaN where there is none.
     """
 
     time: Annotated[FloatArray, exactly(None)]
@@ -61,22 +53,13 @@ def simulate_walk(
     several detections. Every number that the thesis does not give stands in the table `surrogate`
     of the scenario.
 
-    Parameters
-    ----------
-    runs : int
-        Number of independent records of the same walk.
-    rng : numpy.random.Generator
-        Source of randomness; every run draws from a child of its own.
-    radar_count : {1, 2}
-        1: one radar, and a walk that starts close to it (Figs 6.1 to 6.3); 2: both radars, and a
-        walk that starts at (0, 2) (Fig 6.4).
-    variant : {"turns outside", "stops at the edge"}
-        Why nothing is seen between 25 and 42 s: the target walks on beyond the window and turns
-        there, or it stops at the far edge, where a radar that looks for motion does not see it.
-
-    Returns
-    -------
-    SurrogateWalk
+    runs: Number of independent records of the same walk.
+    rng: Source of randomness; every run draws from a child of its own.
+    radar_count: 1: one radar, and a walk that starts close to it (Figs 6.1 to 6.3); 2: both radars,
+        and a walk that starts at (0, 2) (Fig 6.4).
+    variant: Why nothing is seen between 25 and 42 s: the target walks on beyond the window and
+        turns there, or it stops at the far edge, where a radar that looks for motion does not see
+        it.
 
     Examples
     --------

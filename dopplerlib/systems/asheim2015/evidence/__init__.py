@@ -14,17 +14,9 @@ __getattr__, __dir__ = attach(__name__, __path__)
 def evidence(*, rng: np.random.Generator, runs: Runs = 600) -> dict:
     """Return our numbers for every claim.
 
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-        Source of all randomness.
-    runs : int
-        Number of simulated records, and of walks of each kind.
-
-    Returns
-    -------
-    dict
-        Evidence by the id of the claim; that on Chapter 6 is what SIMULATED walks say.
+    rng: Source of all randomness.
+    runs: Number of simulated records, and of walks of each kind.
+    Returns: Evidence by the id of the claim; that on Chapter 6 is what SIMULATED walks say.
     """
     simulated, ranges, positions, steps, walking = rng.spawn(5)
     records = simulate_radars(runs, rng=simulated, duration=_ranges.LONG)

@@ -16,12 +16,7 @@ from ._ratios import choices, ends
 
 
 def settings_and_formulas():
-    """Return the evidence that follows from the printed settings and formulas alone.
-
-    Returns
-    -------
-    dict
-    """
+    """Return the evidence that follows from the printed settings and formulas alone."""
     s, q = reported().scenario, reported().quoted
     n = s.noise
     code = filter_settings("code")
@@ -73,17 +68,9 @@ def settings_and_formulas():
 def gate_growth(own, early=2, late=450):
     """Return the half-width of the printed gate at a late scan over that at an early one.
 
-    Parameters
-    ----------
-    own : Settings
-        Settings of the filter.
-    early, late : int
-        Scans that are compared; between them the last hundred have no measurement.
-
-    Returns
-    -------
-    float
-        Half-width at `late` over that at `early`.
+    own: Settings of the filter.
+    early, late: Scans that are compared; between them the last hundred have no measurement.
+    Returns: Half-width at `late` over that at `early`.
 
     Notes
     -----

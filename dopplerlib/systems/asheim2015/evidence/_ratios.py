@@ -27,19 +27,11 @@ def within(values, name):
 def ratio(a, b, metric, rng):
     """Return the error of one filter over that of another, with its interval.
 
-    Parameters
-    ----------
-    a, b : ndarray, shape (runs, K)
-        Errors of both on the same runs, of which one may have more; NaN where there is none.
-    metric : {"root mean square over all runs", "most runs"}
-        The ratio of their root mean squares; or the median over runs of the ratio in each run,
+    a, b (runs, K): Errors of both on the same runs, of which one may have more; NaN where there is
+        none.
+    metric: The ratio of their root mean squares; or the median over runs of the ratio in each run,
         which is below 1 if `a` is better in more than half of them.
-    rng : numpy.random.Generator
-        Source of the bootstrap.
-
-    Returns
-    -------
-    ConfidenceInterval
+    rng: Source of the bootstrap.
     """
     both = min(len(a), len(b))
     a, b = a[:both], b[:both]

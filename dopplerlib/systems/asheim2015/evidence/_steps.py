@@ -109,22 +109,13 @@ def _sequential(runs, rng):
 def filtered_in_the_plane(runs, track, settings, noises, rng):
     """Return position errors of four filters of one radar that measures range, angle and rate.
 
-    Parameters
-    ----------
-    runs : int
-        Number of records.
-    track, settings : str
-        One of `TRACKS`; whose process noise.
-    noises : list of (float, float)
-        Standard deviations of rate and angle in m/s and rad; that of a range is the thesis's.
-    rng : numpy.random.Generator
-        Source of the noise.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (M, runs, K)
-        In m: the sequential filter of Table 3.3, the extended one without the rate and with it
-        all at once, and the ideal one, which has its derivatives at the true state.
+    runs: Number of records.
+    track, settings: One of `TRACKS`; whose process noise.
+    noises: Standard deviations of rate and angle in m/s and rad; that of a range is the thesis's.
+    rng: Source of the noise.
+    Returns (M, runs, K): In m: the sequential filter of Table 3.3, the extended one without the
+        rate and with it all at once, and the ideal one, which has its derivatives at the true
+        state.
     """
     T, s = reported().scenario.tracks.T, reported().scenario
     time = scan_times()[round(FROM / T) : round(TO / T) + 1]
