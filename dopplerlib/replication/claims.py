@@ -132,14 +132,10 @@ def check_claim(where: str, claim: Claim) -> None:
             _checks.text(f"{name} of {where}", one, least=1)
     if not claim.keys:
         raise ValueError(f"keys of {where} must say where it is found in the document, got none")
+    for name, words in (("kind", KINDS), ("form", FORMS), ("weight", WEIGHTS)):
+        _checks.one_of(f"{name} of {where}", getattr(claim, name), words)
     verdicts = OF_RESULTS if claim.kind == "result" else OF_OTHERS
-    for name, choices in (
-        ("kind", KINDS),
-        ("form", FORMS),
-        ("weight", WEIGHTS),
-        ("verdict", verdicts),
-    ):
-        _checks.one_of(f"{name} of {where}", getattr(claim, name), choices)
+    _checks.one_of(f"verdict of {where}", claim.verdict, verdicts)
     _check_numbers(where, claim)
     if claim.verdict in ("contradicted", "fails", *OPEN) and not claim.note:
         raise ValueError(f"note of {where} must say why it is {claim.verdict}, got none")

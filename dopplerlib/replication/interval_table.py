@@ -60,7 +60,7 @@ def interval_table(
         values = rows[label][name]
         try:
             one = (proportion_interval if np.asarray(values).dtype == bool else interval)(values)
-        except ValueError as error:
+        except (ValueError, TypeError) as error:
             where = f"rows[{label!r}][{name!r}]"
             raise ValueError(f"{where} must hold a number for each run: {error}") from error
         return f"{_short(one.value)} ({_short(one.low)} to {_short(one.high)})"

@@ -77,8 +77,9 @@ class Point:
             elif value is not None:
                 raise ValueError(f"{name} must be a ConfidenceInterval, got {short(value)}")
         _check_numbers("published", self.published)
-        if not isinstance(self.ours, ConfidenceInterval):
-            _checks.check_shape("published", np.asarray(self.published), np.shape(self.ours))
+        shapes = np.shape(self.published), np.shape(self.ours)
+        if not isinstance(self.ours, ConfidenceInterval) and shapes[0] != shapes[1]:
+            raise ValueError(f"ours must have the shape of published, {shapes[0]}, got {shapes[1]}")
         _checks.one_boolean("beyond", self.beyond)
 
 

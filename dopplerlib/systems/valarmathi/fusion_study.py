@@ -218,7 +218,7 @@ def failure_limit(
         raise ValueError(f"shares must be {len(snrs_db)} as ratios, got {len(shares)}")
     ends = []
     for end in ("value", "low", "high"):
-        share = np.array([getattr(one, end) for one in shares])
+        share = _checks.finite("shares", [getattr(one, end) for one in shares])
         above = np.flatnonzero(share > limit)
         if not len(above) or above[-1] == len(share) - 1:
             raise ValueError(f"shares must pass {limit} between the ratios, got {share.tolist()}")

@@ -50,7 +50,8 @@ class FilteredDoppler:
             shape = getattr(self, name).shape
             if shape[:1] != self.windows.shape or shape != self.v.shape or len(shape) < 2:
                 raise ValueError(
-                    f"{name} must have shape ({len(self.windows)}, ..., K) as v, got {shape}"
+                    f"{name} must have shape ({len(self.windows)}, ..., K) as windows and v, "
+                    f"got {shape}"
                 )
 
     @property
