@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from dopplerlib.systems.mittermaier2016.evidence import other_motion
+from dopplerlib.systems.mittermaier2016.evidence import _other_motion as other_motion
 from dopplerlib.systems.mittermaier2016.evidence._runs import GATES, starts
 
 FILES = (".json",)

@@ -6,9 +6,13 @@ each of these seeds, since no verdict may depend on the draw, and the exit code 
 from the one on record. Progress goes to standard error.
 """
 
+import os
 import sys
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import nullcontext
 from importlib import import_module
+from itertools import starmap
 
 import numpy as np
 
@@ -59,15 +63,19 @@ def on_record(document):
     return {claim.id: claim.verdict for claim in claims if not claim.surrogate}
 
 
-def verdicts_by_seed(names, seeds):
-    """Return the verdicts by document, seed and claim; tell what is under way."""
-    found, done = {name: {} for name in names}, 0
-    for name in names:
-        for seed in seeds:
-            done += 1
-            of_all = f"{done} of {len(names) * len(seeds)}"
-            print(f"{of_all}: claims of {name}, seed {seed} ...", file=sys.stderr, flush=True)
-            found[name][seed] = verdicts(name, seed)
+def verdicts_by_seed(names, seeds, workers=None):
+    """Return the verdicts by document, seed and claim; tell what is done.
+
+    They are the same for any number of processes, by default one for each processor.
+    """
+    pairs = [(name, seed) for name in names for seed in seeds]
+    found = {name: {} for name in names}
+    workers = workers or os.cpu_count()
+    with ProcessPoolExecutor(workers) if workers > 1 else nullcontext() as pool:
+        each = pool.map(verdicts, *zip(*pairs, strict=True)) if pool else starmap(verdicts, pairs)
+        for done, ((name, seed), verdict) in enumerate(zip(pairs, each, strict=True), 1):
+            print(f"{done} of {len(pairs)}: {name}, seed {seed}", file=sys.stderr, flush=True)
+            found[name][seed] = verdict
     return found
 
 
@@ -103,12 +111,13 @@ def main(argv=None):
     options = parser(__doc__)
     options.add_argument("documents", nargs="*", help="all that have claims if none is named")
     options.add_argument("--seeds", type=int, nargs="+", help="compare only, with each of these")
+    options.add_argument("--workers", type=int, help="processes; one for each processor by default")
     chosen = options.parse_args(argv)
     if not chosen.seeds:
         different = [line for name in chosen.documents or documents() for line in written(name)]
         print(*different, sep="\n", end="\n" * bool(different))
         return 1 if different else 0
-    found = verdicts_by_seed(chosen.documents or documents(), chosen.seeds)
+    found = verdicts_by_seed(chosen.documents or documents(), chosen.seeds, chosen.workers)
     print(*table(found), sep="\n")
     differ = differences(found, {document: on_record(document) for document in found})
     print(*(differ or ["every verdict is the one on record"]), sep="\n")

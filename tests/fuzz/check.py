@@ -5,8 +5,8 @@ import pytest
 from .run import fuzz
 from .targets import discover
 
-EXAMPLES = 120  # odd calls of each function, the same ones every time; `make fuzz` makes more
-OF_ROOMS = 30  # of the functions of one document, which take longer
+EXAMPLES = 60  # odd calls of each function, the same ones every time; `make fuzz` makes more
+OF_ROOMS = 15  # of the functions of one document, which take longer
 FEW = 10  # of those that take more than 20 ms a call
 SLOW = {
     "evaluation.frequency_benchmark.FrequencyBenchmark",

@@ -31,7 +31,7 @@ def test_the_table_counts_verdicts_for_each_document_and_seed():
 def test_the_exit_code_tells_whether_verdicts_differ(monkeypatch, capsys):
     monkeypatch.setattr(judge, "on_record", RECORD.get)
     monkeypatch.setattr(judge, "verdicts", lambda document, seed: RECORD[document])
-    assert judge.main(["paper", "--seeds", "1", "2", "3"]) == 0
+    assert judge.main(["paper", "--seeds", "1", "2", "3", "--workers", "1"]) == 0
     monkeypatch.setattr(
         judge,
         "verdicts",
@@ -39,7 +39,7 @@ def test_the_exit_code_tells_whether_verdicts_differ(monkeypatch, capsys):
             RECORD[document] | {"a": "atypical"} if seed == 3 else RECORD[document]
         ),
     )
-    assert judge.main(["paper", "--seeds", "1", "2", "3"]) == 1
+    assert judge.main(["paper", "--seeds", "1", "2", "3", "--workers", "1"]) == 1
     out = capsys.readouterr()
     assert "seed 3: a is atypical" in out.out
-    assert "3 of 3: claims of paper, seed 3" in out.err
+    assert "3 of 3: paper, seed 3" in out.err

@@ -22,7 +22,9 @@ def test_the_hashes_on_the_page_are_those_of_the_stored_results_and_data():
 def test_every_document_has_its_verdicts():
     """If this fails: `make record NAME=...`."""
     _, tried = record.recorded(PAGE)
-    judged = [name for name, rows in tried.items() if [row[0] for row in rows] == [1, 2, 3]]
+    judged = [
+        name for name, rows in tried.items() if (*(row[0] for row in rows),) == record.SEEDS_TRIED
+    ]
     assert judged == list(documents())
 
 
@@ -54,6 +56,19 @@ def test_nothing_is_written_if_a_result_differs(monkeypatch, tmp_path, repeated,
     monkeypatch.setattr(record, "seeds_tried", lambda names: tried)
     assert record.main([]) == 1
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("there", "other"),
+    [("typical", "none"), ("undecided", "a"), ("contradicted", None)],
+)
+def test_a_seed_may_leave_a_verdict_undecided_and_must_not_turn_it(monkeypatch, there, other):
+    judgments = {"a": there, "b": "reproduced"}
+    found = {"paper": dict.fromkeys(record.SEEDS_TRIED, judgments)}
+    monkeypatch.setattr(record.judged, "verdicts_by_seed", lambda names, seeds: found)
+    monkeypatch.setattr(record.judged, "on_record", lambda name: judgments | {"a": "typical"})
+    tried = record.seeds_tried(["paper"])
+    assert (tried and {row[-1] for row in tried["paper"]}) == (other and {other})
 
 
 def test_one_document_is_judged_alone_and_the_others_keep_their_rows(monkeypatch, tmp_path):

@@ -63,13 +63,11 @@ def filtered_afresh(dl, np):
 
 
 def judged(dl, rng):
-    """Read all claims; return for those on a surrogate whether the verdict is that on record."""
-    read = dl.replication.documents.read_document
-    for name in dl.replication.documents.documents():
-        read(name)
-    found = dl.systems.asheim2015.evidence.evidence(rng=rng, runs=20)
-    judgments = dl.replication.verdicts.judge_all(read("asheim2015").claims, found)
-    return [one.verdict == one.claim.verdict for one in judgments if one.claim.surrogate]
+    """Read all judgments, make evidence; return whether verdicts are those of the claims."""
+    names = dl.replication.documents.documents()
+    judgments = [one for name in names for one in dl.replication.judgments.read_judgments(name)]
+    dl.systems.sombatsatien.evidence.evidence(rng=rng, runs=9)
+    return [one.verdict == one.claim.verdict for one in judgments]
 
 
 def figure_calls(dl, np):

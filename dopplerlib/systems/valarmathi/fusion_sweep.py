@@ -93,7 +93,7 @@ def sweep_cell(
     --------
     >>> from dopplerlib.systems.valarmathi.fusion_study import study_table
     >>> len(sweep_cell("fighter", 20, study_table(), runs=1))
-    414
+    333
     """
     name, gentle = PATHS[_checks.one_of("path", path, tuple(PATHS))]
     truth = velocity_path(name, gentle)

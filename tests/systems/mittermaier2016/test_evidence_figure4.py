@@ -8,7 +8,7 @@ import pytest
 
 from dopplerlib._data import data
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.evidence.figure4 import figure4_evidence
+from dopplerlib.systems.mittermaier2016.evidence._figure4 import figure4_evidence
 from tests.sweeps import narrowed
 
 SHARED = "one for all places", "one for each place"

@@ -10,7 +10,7 @@ from scipy.stats import norm as normal
 from dopplerlib import doppler_shift
 from dopplerlib._data import data
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.evidence import maps as evidence
+from dopplerlib.systems.mittermaier2016.evidence import _maps as evidence
 from tests.sweeps import narrowed
 
 RECORDS = "one sample", "ten, constant state", "ten, constant velocity"

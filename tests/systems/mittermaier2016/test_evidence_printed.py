@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import gammaincinv
 
-from dopplerlib.systems.mittermaier2016.evidence import printed
+from dopplerlib.systems.mittermaier2016.evidence import _printed as printed
 from tests.systems.mittermaier2016 import textbook
 
 DATA = Path(__file__).resolve().parents[3] / "data" / "mittermaier2016"

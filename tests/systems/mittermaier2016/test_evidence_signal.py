@@ -5,8 +5,8 @@ import pytest
 from scipy.stats import kstest, norm
 
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.evidence import signal as evidence
-from dopplerlib.systems.mittermaier2016.evidence.chain import chain_evidence
+from dopplerlib.systems.mittermaier2016.evidence import _signal as evidence
+from dopplerlib.systems.mittermaier2016.evidence._chain import chain_evidence
 from tests.sweeps import narrowed
 
 S = paper.reported().scenario

@@ -6,7 +6,7 @@ from scipy.optimize import least_squares, minimize
 
 from dopplerlib import doppler_shift, simulate
 from dopplerlib.systems import mittermaier2016 as paper
-from dopplerlib.systems.mittermaier2016.evidence import start as evidence
+from dopplerlib.systems.mittermaier2016.evidence import _start as evidence
 from tests.sweeps import narrowed
 
 S = paper.reported().scenario

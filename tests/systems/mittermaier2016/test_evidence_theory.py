@@ -5,9 +5,13 @@ import pytest
 
 from dopplerlib._data import read_json, results
 from dopplerlib.systems.mittermaier2016.evidence import (
-    first_covariance,
-    other_motion,
-    right_models,
+    _first_covariance as first_covariance,
+)
+from dopplerlib.systems.mittermaier2016.evidence import (
+    _other_motion as other_motion,
+)
+from dopplerlib.systems.mittermaier2016.evidence import (
+    _right_models as right_models,
 )
 from studies import turned_ring as study
 from tests.systems.mittermaier2016 import textbook

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dopplerlib.systems.mittermaier2016.evidence import _runs, tracking
+from dopplerlib.systems.mittermaier2016.evidence import _runs
+from dopplerlib.systems.mittermaier2016.evidence import _tracking as tracking
 from tests.systems.mittermaier2016 import textbook
 
 DATA = Path(__file__).resolve().parents[3] / "data" / "mittermaier2016"

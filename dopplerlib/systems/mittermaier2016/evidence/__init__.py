@@ -5,16 +5,16 @@ import numpy as np
 from ...._hints import checked
 from ...._lazy import attach
 from ....replication.documents import read_document
-from .chain import chain_evidence
-from .figure4 import figure4_evidence
-from .first_covariance import covariance_evidence
-from .maps import map_evidence
-from .other_motion import motion_evidence
-from .printed import printed_evidence
-from .right_models import right_evidence
-from .signal import signal_evidence
-from .start import start_evidence
-from .tracking import tracking_evidence
+from ._chain import chain_evidence
+from ._figure4 import figure4_evidence
+from ._first_covariance import covariance_evidence
+from ._maps import map_evidence
+from ._other_motion import motion_evidence
+from ._printed import printed_evidence
+from ._right_models import right_evidence
+from ._signal import signal_evidence
+from ._start import start_evidence
+from ._tracking import tracking_evidence
 
 
 @checked

@@ -8,7 +8,7 @@ from ....model.doppler import doppler_shift
 from ....replication.evidence import sweep
 from ..published import reported
 from ._runs import choices, starts
-from .tracking import block_errors
+from ._tracking import block_errors
 
 _SPEED_OF_LIGHT = 299_792_458.0  # m/s
 _CARRIER = 24e9  # Hz, Section 2

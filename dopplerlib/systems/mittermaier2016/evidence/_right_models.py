@@ -142,10 +142,8 @@ def _best_linear(samples=50):
     filtered = kf(z, F, Q, H, R, np.zeros(6), s.P0).P[-1, 0, 0]
     # Covariance of all states, row by row: each follows from the one before.
     blocks = np.zeros((samples, samples, 6, 6))
-    P = s.P0
     for k in range(samples):
-        P = F @ P @ F.T + Q
-        blocks[k, k] = P
+        blocks[k, k] = F @ (blocks[k - 1, k - 1] if k else s.P0) @ F.T + Q
         for later in range(k + 1, samples):
             blocks[later, k] = F @ blocks[later - 1, k]
             blocks[k, later] = blocks[later, k].T

@@ -13,8 +13,8 @@ from ....model.motion import constant_velocity
 from ....model.radar_array import RadarArray
 from ....replication.evidence import sweep
 from ..published import reported
+from ._first_covariance import errors_of, neglected
 from ._runs import GATES, choices, starts, tracked
-from .first_covariance import errors_of, neglected
 
 _BRAKING = 100
 _TURNING = 10
