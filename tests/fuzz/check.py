@@ -9,6 +9,13 @@ EXAMPLES = 60  # odd calls of each function, the same ones every time; `make fuz
 OF_ROOMS = 15  # of the functions of one document, which take longer
 FEW = 10  # of those that take more than 20 ms a call
 SLOW = {
+    "replication.judgments.judgments_text",
+    "replication.judgments.read_judgments",
+    "replication.judgments.verdicts_on_page",
+    "systems.macaveiu2013.claim_regions.PathScores",
+    "systems.macaveiu2013.model_comparison.model_errors",
+    "systems.valarmathi.algorithms.AlgorithmRuns",
+    "systems.valarmathi.fusion_sweep.FusionSweep",
     "evaluation.frequency_benchmark.FrequencyBenchmark",
     "signal.waveforms.range_doppler_map",
     "systems.asheim2015.published.Reported",
