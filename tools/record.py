@@ -174,7 +174,7 @@ A verdict stands only if it stands for every reasonable value of what we chose, 
 in which the text can be read. `data/<document>/choices.toml` declares them, each with a date and a
 reason that does not depend on the result; a row that they turn says at which value.
 
-Random results change with the seed, verdicts must not, and no limit is moved to make it so: where
+Random results change with the seed, verdicts should not, and no limit is moved to make it so: where
 our runs are too few to tell, the verdict is that, and stands on the page. What is decided stays so
 on an interval of twice the width of 95 %. `make record` draws the noise behind every claim again
 with five other seeds. It fails if a verdict turns into another one; one that is left undecided by

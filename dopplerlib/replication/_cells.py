@@ -54,7 +54,7 @@ def flips(judgment):
         lines.append(f"turns at a limit of {' to '.join(dict.fromkeys(turns))}")
     beyond = [one for one in judgment.turned]
     if beyond:
-        where = "; ".join(f"{_at(one.at)}: {one.verdict}" for one in beyond[:3])
+        where = "; ".join(f"{place(one.at)}: {one.verdict}" for one in beyond[:3])
         more = f" and {len(beyond) - 3} more" if len(beyond) > 3 else ""
         lines.append(f"beyond its range, {where}{more}")
     return lines
@@ -75,5 +75,6 @@ def _values(values):
     return ", ".join(one if isinstance(one, str) else f"{one:g}" for one in values)
 
 
-def _at(at):
+def place(at):
+    """Return the values of choices as text."""
     return ", ".join(f"{name} {_values([value])}" for name, value in at.items())

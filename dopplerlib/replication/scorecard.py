@@ -4,7 +4,7 @@ from collections import Counter
 
 from .. import _checks
 from .._records import record
-from ._cells import badge, flips, link, ours, published, table
+from ._cells import badge, flips, link, ours, place, published, table
 from .claims import VERDICTS, Claim, check_claim
 from .verdicts import Judgment
 
@@ -126,6 +126,5 @@ def _row(judgment):
     if judgment.nearest.percentile is not None:
         found.append(f"published at the percentile {judgment.nearest.percentile}")
     if judgment.nearest.at:
-        at = ", ".join(f"{name} {value}" for name, value in judgment.nearest.at.items())
-        found.append(f"nearest at {at}")
+        found.append(f"nearest at {place(judgment.nearest.at)}")
     return "<br>".join(said), published(judgment), "<br>".join(found + flips(judgment))
