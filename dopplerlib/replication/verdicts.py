@@ -145,10 +145,11 @@ class Judgment:
     @property
     def turned(self) -> tuple[Point, ...]:
         """Comparisons beyond the declared ranges that would change the verdict."""
+        within = [one.verdict for one in self.points if not one.beyond]
         return tuple(
             one
             for one in self.points
-            if one.beyond and _together([self.verdict, one.verdict]) != self.verdict
+            if one.beyond and _together([*within, one.verdict]) != self.verdict
         )
 
 

@@ -171,6 +171,15 @@ def test_what_lies_beyond_the_range_is_told_and_does_not_count():
     assert [one.at for one in found.turned] == [{"start": "other", "count": 9}]
 
 
+def test_a_value_beyond_does_not_turn_a_verdict_that_the_range_leaves_open():
+    near = ConfidenceInterval(0.9, 0.8, 1.1)
+    found = judge(OPEN, swept({("one", 5): 1.5, ("one", 9): near}), [START, COUNT])
+    assert (found.verdict, found.turned) == ("underdetermined", ())
+    found = judge(OPEN, swept({("one", 5): near, ("one", 9): 1.5}), [START, COUNT])
+    assert found.verdict == "undecided"
+    assert [one.verdict for one in found.turned] == ["contradicted"]
+
+
 def test_the_limit_may_be_a_choice():
     claim = replace(LIMIT, published=None, limit="count", relation=">")
     assert judge(claim, 6.0, [COUNT]).verdict == "reproduced"
