@@ -5,9 +5,9 @@ import pytest
 from .run import fuzz
 from .targets import discover
 
-EXAMPLES = 60  # odd calls of each function, the same ones every time; `make fuzz` makes more
-OF_ROOMS = 15  # of the functions of one document, which take longer
-FEW = 10  # of those that take more than 20 ms a call
+EXAMPLES = 30  # odd calls of each function, the same ones every time; `make fuzz` makes more
+OF_ROOMS = 8  # of the functions of one document, which take longer
+FEW = 4  # of those that take more than 20 ms a call
 SLOW = {
     "replication.judgments.judgments_text",
     "replication.judgments.read_judgments",

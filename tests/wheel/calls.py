@@ -23,7 +23,7 @@ def part_calls(dl, np):
 
     Of the systems these are some that read files, or compile; `judged` reads what all have.
     """
-    s, rng = dl.systems, np.random.default_rng(1)
+    s = dl.systems
     ring, x0, one = dl.RadarArray.ring(6, 0.2), [1.0, 0, 0, -1, 0, 0], np.eye(1)
     nodes = np.arange(3.0)
     return {
@@ -36,7 +36,7 @@ def part_calls(dl, np):
         "tracking": lambda: dl.gnn_assign([[1.0, 2.0], [3.0, 0.5]], 4.0)[0],
         "chain": lambda: dl.chain.baseband.Baseband.from_samples(np.ones((6, 500)), 1e3, ring).fs,
         "evaluation": lambda: dl.chi2_interval(6),
-        "replication": lambda: judged(dl, rng),
+        "replication": lambda: judged(dl),
         "systems, asheim2015": lambda: s.asheim2015.noise_std([1.0, 2.0]),
         "systems, macaveiu2013": lambda: s.macaveiu2013.saved_detections()[7]["target"],
         "systems, mittermaier2016": lambda: s.mittermaier2016.reported().figure6.nis,
@@ -62,11 +62,10 @@ def filtered_afresh(dl, np):
         return pool.apply(filtered, (dl.__name__, np.__name__))
 
 
-def judged(dl, rng):
-    """Read all judgments, make evidence; return whether verdicts are those of the claims."""
+def judged(dl):
+    """Read all judgments; return whether their verdicts are those of the claims."""
     names = dl.replication.documents.documents()
     judgments = [one for name in names for one in dl.replication.judgments.read_judgments(name)]
-    dl.systems.sombatsatien.evidence.evidence(rng=rng, runs=9)
     return [one.verdict == one.claim.verdict for one in judgments]
 
 
