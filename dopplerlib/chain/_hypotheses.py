@@ -64,14 +64,16 @@ def hypotheses(z, std, array, T, apart, boxes):
 
 
 def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs):
-    """Return x, P, nis, memory and score of the filters from the hypotheses of one run.
+    """Return x, P, innovation, S, nis, memory and score of the filters of one run.
 
     `free` (6,) says which components of the state are unknown at the start.
     """
     shape = (len(states), 1 + len(z) - used)
     x, P = np.full((*shape, 6), np.nan), np.full((*shape, 6, 6), np.nan)
     nis, score = np.full((shape[0], shape[1] - 1), np.nan), np.full(shape, np.inf)
-    innovations = {}
+    innovation = np.full((*nis.shape, len(array)), np.nan)
+    S = np.full((*innovation.shape, len(array)), np.nan)
+    factors = {}
     costs = np.where(np.isnan(costs), np.inf, costs)
     for i in np.flatnonzero(costs < costs.min() + CARRIED):
         covariance = start_covariance(states[i], array, weights, apart * T, free)
@@ -83,11 +85,12 @@ def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs
             sigma = np.where(np.isinf(std[used:]), 1.0, std[used:])
             t = ekf(z[used:], array, states[i], covariance, T, sigma_a, sigma, workers=1)
             x[i, 1:], P[i, 1:], nis[i] = t.x, t.P, t.nis
-            factor = _factor(t.S, np.isnan(t.innovation))
-            score[i, 1:] += np.cumsum(_misfit(t.nis, factor))
-            innovations[i] = t.innovation, factor
-    winner = innovations.get(np.argmin(score[:, -1]))
-    return x, P, nis, np.nan if winner is None else _memory(*winner), score
+            innovation[i], S[i] = t.innovation, t.S
+            factors[i] = _factor(t.S, np.isnan(t.innovation))
+            score[i, 1:] += np.cumsum(_misfit(t.nis, factors[i]))
+    best = np.argmin(score[:, -1])
+    memory = _memory(innovation[best], factors[best]) if best in factors else np.nan
+    return x, P, innovation, S, nis, memory, score
 
 
 def _factor(S, missing):

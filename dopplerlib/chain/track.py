@@ -11,6 +11,7 @@ from .._hints import Positive, Real, checked
 from .._records import record
 from .._typing import ArrayLike, BoolArray, FloatArray, IntArray
 from ..estimation.maximum_likelihood import IMPLAUSIBLE, ImplausibleStart
+from ..estimation.track import Track
 from ..model.motion import constant_velocity
 from ..signal.frequency import ml_frequency
 from ..signal.impairments import correct_iq_imbalance, remove_mean
@@ -41,6 +42,10 @@ class IqTrack:
         there is no such hypothesis.
     P : ndarray, shape (..., H, 1 + K - used, 6, 6)
         Their covariances.
+    innovation : ndarray, shape (..., H, K - used, N)
+        Shift less predicted shift in Hz; NaN where the shift is missing.
+    S : ndarray, shape (..., H, K - used, N, N)
+        Innovation covariances.
     nis : ndarray, shape (..., H, K - used)
         Normalized innovation squared.
     lag1_autocorrelation : ndarray, shape (...)
@@ -65,8 +70,8 @@ class IqTrack:
     A track of one sample after a start of one, and where it is a tenth of a second later:
 
     >>> x, P = [[[1, 2, 3, 1, 0, 0]] * 2], [[np.eye(6)] * 2]
-    >>> z, score = [[5.0], [6.0]], [[0.0, 1.0]]
-    >>> one = IqTrack([0.1, 0.2], [0.1, 0.2], z, z, 1, x, P, [[0.5]], 0.0, score, 0, 0.1)
+    >>> z, score, nu, S = [[5.0], [6.0]], [[0.0, 1.0]], [[[1.0]]], [[[[2.0]]]]
+    >>> one = IqTrack([0.1, 0.2], [0.1, 0.2], z, z, 1, x, P, nu, S, [[0.5]], 0.0, score, 0, 0.1)
     >>> bool(one.plausible), one.final_nis.tolist(), one.samples_at(0.15)
     (True, [0.5], 0)
     >>> one.at(0.3)[0].round(3).tolist()
@@ -80,6 +85,8 @@ class IqTrack:
     used: int
     x: np.ndarray
     P: np.ndarray
+    innovation: np.ndarray
+    S: np.ndarray
     nis: np.ndarray
     lag1_autocorrelation: np.ndarray
     score: np.ndarray
@@ -89,13 +96,14 @@ class IqTrack:
     def __post_init__(self):
         """Check the fields."""
         shift = _checks.measured("shift", self.shift, (None, None))
-        leading, K = shift.shape[:-2], shift.shape[-2]
+        leading, (K, N) = shift.shape[:-2], shift.shape[-2:]
         used = _checks.count("used", self.used, K)
         x = _checks.measured("x", self.x, (None, 1 + K - used, 6))
         each = *leading, x.shape[len(leading)], 1 + K - used
         shapes = {
             "time": (K,), "available_at": (K,), "shift": shift.shape, "shift_std": shift.shape,
-            "x": (*each, 6), "P": (*each, 6, 6), "nis": (*each[:-1], K - used),
+            "x": (*each, 6), "P": (*each, 6, 6), "innovation": (*each[:-1], K - used, N),
+            "S": (*each[:-1], K - used, N, N), "nis": (*each[:-1], K - used),
             "lag1_autocorrelation": leading, "score": each, "degrees": leading,
         }  # fmt: skip
         fields = {"used": used}
@@ -125,7 +133,18 @@ class IqTrack:
 
         NaN if there is none.
         """
-        return _of_each(self.nis, np.argmin(self.score[..., -1], axis=-1))
+        return self.final_track.nis
+
+    @property
+    def final_track(self) -> Track:
+        """Track of the hypothesis with the highest final likelihood, (..., K - used) samples.
+
+        It begins with the first sample after the start. NaN if there is none.
+        """
+        best = np.argmin(self.score[..., -1], axis=-1)
+        fields = self.x[..., 1:, :], self.P[..., 1:, :, :], self.innovation, self.S, self.nis
+        x, P, innovation, S, nis = (_of_each(field, best) for field in fields)
+        return Track(x, P, innovation, S, nis, np.isfinite(innovation).any(axis=-1))
 
     @checked
     def samples_at(self, time: Real) -> int:
@@ -365,12 +384,8 @@ def track_iq(
             f"got {velocity_random_walk:g}"
         ) from None
     fields = z, std, *map(np.array, zip(*each, strict=True)), degrees
-    z, std, x, P, nis, memory, score, degrees = (
-        field.reshape((*leading, *field.shape[1:])) for field in fields
-    )
-    return IqTrack(
-        time, available_at, z, std, used, x, P, nis, memory, score, degrees, velocity_random_walk
-    )
+    z, std, *rest = (field.reshape((*leading, *field.shape[1:])) for field in fields)
+    return IqTrack(time, available_at, z, std, used, *rest, velocity_random_walk)
 
 
 def _of_each(values, chosen):

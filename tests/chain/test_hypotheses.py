@@ -88,11 +88,17 @@ def test_a_missing_module_adds_nothing_to_the_score(found):
     rest = (np.delete(a, 4, axis=1) for a in (z, std, std[:USED:APART]))
     used, common = found.used, (T, found.used, APART, 0.4, ALL, [x], np.array([1.0]))
     weights = std[:used:APART]
-    six = filters(z, std, weights, S.array, *common)
+    x, P, nu, cov, *rest_of_six = filters(z, std, weights, S.array, *common)
+    assert np.isnan(nu[..., 4]).all()
+    nu, cov = np.delete(nu, 4, axis=-1), np.delete(np.delete(cov, 4, axis=-1), 4, axis=-2)
+    six = x, P, nu, cov, *rest_of_six
     z5, std5, _ = rest
     other = filters(z5, std5, np.delete(weights, 4, axis=1), five, *common)
     for name, a, b in zip(
-        ("x", "P", "nis", "lag1_autocorrelation", "score"), six, other, strict=True
+        ("x", "P", "innovation", "S", "nis", "lag1_autocorrelation", "score"),
+        six,
+        other,
+        strict=True,
     ):
         if name != "lag1_autocorrelation":  # says nothing where a module is missing
             assert_allclose(a, b, rtol=1e-6, atol=1e-9, err_msg=name)

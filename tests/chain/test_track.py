@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.stats import chi2
 
-from dopplerlib import RadarArray, iq_from_geometry
+from dopplerlib import RadarArray, iq_from_geometry, nis
 from dopplerlib.chain.baseband import Baseband
 from dopplerlib.chain.track import track_iq
 from dopplerlib.estimation.maximum_likelihood import ImplausibleStart
@@ -98,6 +98,18 @@ def test_errors_have_the_stated_covariance(room):
     assert low < total < 1.5 * high
 
 
+def test_the_track_of_the_likeliest_hypothesis_is_that_of_the_filter(room):
+    """Its innovations give its NIS, and its states are those that `at` returns."""
+    _, f, _ = room[0]
+    track = f.final_track
+    assert_allclose(nis(track.innovation, track.S), f.final_nis, rtol=1e-9)
+    for k in (0, -1):
+        x, P, _ = f.at(f.available_at[f.used :][k])
+        ahead = f.available_at[f.used :][k] - f.time[f.used :][k]
+        assert_allclose(x[:3] - ahead * x[3:], track.x[k, :3], rtol=1e-9)
+    assert track.updated.all() and len(track.x) == len(f.time) - f.used
+
+
 def test_leading_axes_are_those_of_the_samples(room):
     iq, one, _ = room[0]
     two = replace(iq, x=iq.x[None, None], valid=iq.valid[None, None])
@@ -106,6 +118,8 @@ def test_leading_axes_are_those_of_the_samples(room):
         "shift",
         "x",
         "P",
+        "innovation",
+        "S",
         "nis",
         "lag1_autocorrelation",
         "score",

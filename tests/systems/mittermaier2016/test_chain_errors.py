@@ -27,8 +27,9 @@ def found():
     score = np.array([[[1.0, 1.0, 9.0, 1.0], [2.0, 2.0, 2.0, 2.0]]])
     nis, memory = np.array([[[1.0, 2, 3], [4, 5, 6]]]), np.array([0.1])
     z = np.zeros((1, 4, 6))
-    degrees = np.array([18])
-    return IqTrack(TIME, TIME + LATER, z, z + 1, 1, x, P, nis, memory, score, degrees, 0.5)
+    nu, S = np.zeros((1, 2, 3, 6)), np.zeros((1, 2, 3, 6, 6))
+    last = nis, memory, score, np.array([18]), 0.5
+    return IqTrack(TIME, TIME + LATER, z, z + 1, 1, x, P, nu, S, *last)
 
 
 def test_the_likeliest_so_far_counts_whatever_comes_later(found):
