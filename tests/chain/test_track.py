@@ -104,7 +104,7 @@ def test_the_track_of_the_likeliest_hypothesis_is_that_of_the_filter(room):
     track = f.final_track
     assert_allclose(nis(track.innovation, track.S), f.final_nis, rtol=1e-9)
     for k in (0, -1):
-        x, P, _ = f.at(f.available_at[f.used :][k])
+        x = f.at(f.available_at[f.used :][k])[0]
         ahead = f.available_at[f.used :][k] - f.time[f.used :][k]
         assert_allclose(x[:3] - ahead * x[3:], track.x[k, :3], rtol=1e-9)
     assert track.updated.all() and len(track.x) == len(f.time) - f.used
