@@ -385,7 +385,9 @@ def track_iq(
         ) from None
     fields = z, std, *map(np.array, zip(*each, strict=True)), degrees
     z, std, *rest = (field.reshape((*leading, *field.shape[1:])) for field in fields)
-    return IqTrack(time, available_at, z, std, used, *rest, velocity_random_walk)
+    return IqTrack(
+        time, available_at, z, std, used, *rest, velocity_random_walk=velocity_random_walk
+    )
 
 
 def _of_each(values, chosen):
