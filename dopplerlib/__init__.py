@@ -9,6 +9,7 @@ from ._lazy import attach, by_name
 _HOME = by_name(
     {
         "model.radar_array": "RadarArray",
+        "model.links": "DopplerLinks",
         "model.doppler": "doppler_shift doppler_jacobian",
         "model.motion": "constant_velocity",
         "model.coordinated_turn": "coordinated_turn coordinated_turn_jacobian",

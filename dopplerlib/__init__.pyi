@@ -50,6 +50,7 @@ from .model.coordinated_turn import coordinated_turn_jacobian as coordinated_tur
 from .model.doppler import doppler_jacobian as doppler_jacobian
 from .model.doppler import doppler_shift as doppler_shift
 from .model.information import fisher_information as fisher_information
+from .model.links import DopplerLinks as DopplerLinks
 from .model.motion import constant_velocity as constant_velocity
 from .model.radar_array import RadarArray as RadarArray
 from .model.scenario import Scenario as Scenario
@@ -68,6 +69,7 @@ from .tracking.management import TrackManager as TrackManager
 
 __all__ = [
     "Baseband",
+    "DopplerLinks",
     "DopplerRecord",
     "ImmModel",
     "InitialEstimate",

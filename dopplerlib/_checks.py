@@ -325,9 +325,11 @@ def estimates(names, *arrays, what="estimates"):
 
 
 def instance(name, value, kind):
-    """Return `value`, or raise if it is not an instance of the class `kind`."""
+    """Return `value`, or raise if it is not an instance of `kind`, a class or a tuple of some."""
     if not isinstance(value, kind):
-        raise ValueError(f"{name} must be a {kind.__name__}, got {_short(value)}")
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        wanted = " or a ".join(one.__name__ for one in kinds)
+        raise ValueError(f"{name} must be a {wanted}, got {_short(value)}")
     return value
 
 

@@ -200,6 +200,8 @@ def _either(parts):
     words = sum((get_args(part) for part in parts if get_origin(part) is Literal), ())
     if set(parts) >= _ARRAY_LIKE:
         return None
+    if all(isinstance(part, type) and part not in (*_PLAIN, NoneType) for part in parts):
+        return partial(_checks.instance, kind=parts)
     rest = [_check(p) for p in parts if p is not NoneType and get_origin(p) is not Literal]
 
     def either(name, value):

@@ -2,6 +2,7 @@
 from . import block as block
 from . import doppler as doppler
 from . import ekf as ekf
+from . import links as links
 from . import printers as printers
 from . import ring as ring
 from . import snapshot as snapshot

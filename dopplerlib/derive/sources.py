@@ -2,8 +2,8 @@
 
 import sympy as sp
 
-from . import ekf
-from .doppler import GRADIENT, STATE, gradient_block, shift_block
+from . import doppler, ekf, links
+from .doppler import GRADIENT, STATE
 from .printers import python_function, python_lanes
 
 _HEAD = '''"""{title}
@@ -16,16 +16,21 @@ Printed by ``python -m dopplerlib.derive`` with SymPy {version}. Do not edit: ch
 
 def kernel_sources():
     """Return {file name: text} of the modules that `dopplerlib.kernels` holds."""
-    return {"doppler.py": _doppler(), "ekf.py": _ekf()}
+    target = "Doppler shift of a point target at {}, and its gradient."
+    return {
+        "doppler.py": _shift_and_gradient(target.format("a fixed sensor"), doppler),
+        "links.py": _shift_and_gradient(target.format("a sensor that moves"), links),
+        "ekf.py": _ekf(),
+    }
 
 
-def _doppler():
+def _shift_and_gradient(title, module):
     return "\n".join(
         [
-            _head("Doppler shift of a point target at a fixed sensor, and its gradient."),
+            _head(title),
             "from numpy import sqrt\n\n",
-            python_function(shift_block()) + "\n",
-            python_function(gradient_block()),
+            python_function(module.shift_block()) + "\n",
+            python_function(module.gradient_block()),
         ]
     )
 

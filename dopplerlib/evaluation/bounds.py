@@ -5,16 +5,17 @@ from typing import Literal
 from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 from ..model.information import fisher_information, inverse_information
+from ..model.links import DopplerLinks
 from ..model.radar_array import RadarArray
 
 
 @checked
 def crlb(
     x: ArrayLike,
-    array: RadarArray,
+    array: RadarArray | DopplerLinks,
     sigma_f: ArrayLike,
-    K: int = 1,
-    T: float = 0.001,
+    K: int | None = None,
+    T: ArrayLike = 0.001,
     likelihood: Literal["stationary", "constant_velocity"] = "stationary",
     *,
     free: ArrayLike | None = None,
@@ -24,25 +25,25 @@ def crlb(
     Parameters
     ----------
     x : array_like, shape (..., 6)
-        True states [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s.
-    array : RadarArray
-        The N sensors.
+        True states [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s; for links (..., n).
+    array : RadarArray or DopplerLinks
+        The N sensors or links.
     sigma_f : array_like, broadcast to (K, N)
-        Standard deviation of the measurements in Hz.
-    K : int
-        Number of samples.
-    T : float
-        Sampling interval in s.
+        Standard deviation of the measurements in Hz; NaN where one is missing.
+    K : int, optional
+        Number of samples, see `fisher_information`.
+    T : array_like, scalar or shape (K,)
+        Sampling interval in s, or the interval before each sample.
     likelihood : {"stationary", "constant_velocity"}
         Whether the state is constant during the samples, or moves at constant velocity; see
         `fisher_information`.
-    free : array_like of bool, shape (6,), optional
+    free : array_like of bool, shape (6,) or (n,), optional
         Components that are unknown, such as x, y, v_x, v_y in a plane. The others are known:
         their variances are zero. All are unknown if None.
 
     Returns
     -------
-    ndarray, shape (..., 6, 6)
+    ndarray, shape (..., 6, 6) or (..., n, n)
         Covariances. Where the information is singular no unbiased estimate exists: the variance
         of every component that takes part in an unobservable direction is infinite, and its
         covariances are NaN.

@@ -11,15 +11,16 @@ from .._typing import ArrayLike, FloatArray, IntArray
 from ..estimation.maximum_likelihood import ml_initialize
 from ..model.doppler import doppler_shift
 from ..model.information import SINGULAR, fisher_information, free_components
+from ..model.links import DopplerLinks, state_size
 from ..model.radar_array import RadarArray
 
 
 @checked
 def observable_rank(
     x: ArrayLike,
-    array: RadarArray,
-    K: int = 1,
-    T: float = 0.001,
+    array: RadarArray | DopplerLinks,
+    K: int | None = None,
+    T: ArrayLike = 0.001,
     likelihood: Literal["stationary", "constant_velocity"] = "stationary",
     *,
     free: ArrayLike | None = None,
@@ -29,16 +30,12 @@ def observable_rank(
     Parameters
     ----------
     x : array_like, shape (..., 6)
-        States [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s.
-    array : RadarArray
-        The N sensors.
-    K : int
-        Number of samples.
-    T : float
-        Sampling interval in s.
-    likelihood : {"stationary", "constant_velocity"}
+        States [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s; for links (..., n).
+    array : RadarArray or DopplerLinks
+        The N sensors or links.
+    K, T, likelihood
         See `fisher_information`.
-    free : array_like of bool, shape (6,), optional
+    free : array_like of bool, shape (6,) or (n,), optional
         Components that are unknown; all if None.
 
     Returns
@@ -53,7 +50,7 @@ def observable_rank(
     >>> int(observable_rank([0.8, 0.1, 0.1, -0.7, 0, 0], RadarArray.ring(12, 0.2)))
     5
     """
-    free = free_components(free, 6)
+    free = free_components(free, state_size(array))
     J = fisher_information(x, array, 1.0, K, T, likelihood)[..., *np.ix_(free, free)]
     scale = np.sqrt(np.diagonal(J, axis1=-2, axis2=-1))
     scale = np.where(scale > 0, scale, 1.0)

@@ -1,3 +1,4 @@
 # Made by python -m tools.stubs; do not edit.
 from . import doppler as doppler
 from . import ekf as ekf
+from . import links as links

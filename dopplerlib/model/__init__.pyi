@@ -4,6 +4,7 @@ from . import coordinated_turn as coordinated_turn
 from . import doppler as doppler
 from . import information as information
 from . import iso_doppler as iso_doppler
+from . import links as links
 from . import motion as motion
 from . import polar_radar as polar_radar
 from . import radar_array as radar_array

@@ -5,9 +5,10 @@ from typing import Literal
 import numpy as np
 
 from .. import _checks
-from .._hints import Count, Positive, checked
+from .._hints import Count, checked
 from .._typing import ArrayLike, BoolArray, FloatArray
 from .doppler import doppler_jacobian
+from .links import DopplerLinks, sample_times, state_size
 from .radar_array import RadarArray
 
 # Smallest eigenvalue, of an information matrix scaled to a diagonal of ones, that is not rounding.
@@ -19,10 +20,10 @@ SINGULAR = 1e-13
 @checked
 def fisher_information(
     x: ArrayLike,
-    array: RadarArray,
+    array: RadarArray | DopplerLinks,
     sigma_f: ArrayLike,
-    K: Count = 1,
-    T: Positive = 0.001,
+    K: Count | None = None,
+    T: ArrayLike = 0.001,
     likelihood: Literal["stationary", "constant_velocity"] = "stationary",
 ) -> FloatArray:
     """Return the Fisher information of K Doppler samples about the state at the first one.
@@ -30,29 +31,34 @@ def fisher_information(
     Parameters
     ----------
     x : array_like, shape (..., 6)
-        States [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s, not on a sensor.
-    array : RadarArray
-        The N sensors.
+        States [x, y, z, v_x, v_y, v_z] at the first sample, in m and m/s, not on a sensor. For
+        links shape (..., n), with the offsets of their clocks.
+    array : RadarArray or DopplerLinks
+        The N sensors or links.
     sigma_f : array_like, broadcast to (K, N)
-        Standard deviation of the measurements in Hz.
-    K : int
-        Number of samples.
-    T : float
-        Sampling interval in s; without effect if the state is constant.
+        Standard deviation of the measurements in Hz; NaN where one is missing.
+    K : int, optional
+        Number of samples: if None that of the links' times, or one.
+    T : array_like, scalar or shape (K,)
+        Sampling interval in s, or the interval before each sample, see `DopplerLinks.sampled`.
+        Without effect on links that have times, and if everything is constant.
     likelihood : {"stationary", "constant_velocity"}
-        "stationary": the state is the same at all samples, Eq 10 as printed. "constant_velocity":
-        the target moves at constant velocity, so sample k sees the state F^k x.
+        "stationary": the target is the same at all samples, Eq 10 as printed. "constant_velocity":
+        it moves at constant velocity, so sample k sees the state F^k x. Sensors and clocks go on
+        in both.
 
     Returns
     -------
     ndarray, shape (..., 6, 6)
         The information in units of 1/m^2, s/m^2 and s^2/m^2. It is singular if no measurement
-        changes, to first order, along some direction.
+        changes, to first order, along some direction. For links shape (..., n, n).
 
     Notes
     -----
     J = sum over k of F'^k H_k' R^-1 H_k F^k with the Jacobian H_k of Eq 7 at sample k; see
-    Bar-Shalom, Li and Kirubarajan (2001), Section 2.7.
+    Bar-Shalom, Li and Kirubarajan (2001), Section 2.7. A clock of "epoch" is another unknown at
+    each sample. All but those of the first are eliminated: what is left of H_k is orthogonal to
+    the columns of the clock.
 
     Examples
     --------
@@ -62,21 +68,31 @@ def fisher_information(
     >>> int(np.linalg.matrix_rank(J, hermitian=True, rtol=1e-13))
     5
     """
-    x = _checks.moderate("x", x, (6,))
-    weight = 1 / _checks.each_run(
-        "sigma_f", _checks.deviation("sigma_f", sigma_f), (K, len(array)), ()
-    )
+    n = state_size(array)
+    x = _checks.moderate("x", x, (n,))
+    times = sample_times(array, K, T)
+    sigma_f = _checks.measured("sigma_f", sigma_f, ())
+    missing = np.isnan(sigma_f)
+    weight = np.where(missing, 0.0, 1 / _checks.deviation("sigma_f", np.where(missing, 1, sigma_f)))
+    weight = _checks.each_run("sigma_f", weight, (len(times), len(array)), ())
     with np.errstate(all="ignore"):
-        if likelihood == "constant_velocity":
-            information = np.zeros((*x.shape, 6))
-            for k in range(K):
-                F = np.eye(6)
-                F[:3, 3:] = k * T * np.eye(3)
-                H = doppler_jacobian(x @ F.T, array) * weight[k, :, None] @ F
-                information += H.swapaxes(-1, -2) @ H
-        else:
+        if isinstance(array, RadarArray) and likelihood == "stationary":
             H = doppler_jacobian(x, array) * np.sqrt(np.sum(weight**2, axis=0))[:, None]
             information = H.swapaxes(-1, -2) @ H
+        else:
+            information = np.zeros((*x.shape, n))
+            links = None if isinstance(array, RadarArray) else array.sampled(len(times), T)
+            for k, t in enumerate(times - times[0]):
+                F, here = np.eye(n), array
+                if links is not None:
+                    F, here = (links.transition(t) if k else F), links.at_sample(k)
+                F[:3, 3:6] = t * np.eye(3) * (likelihood == "constant_velocity")
+                H = doppler_jacobian(x @ F.T, here) * weight[k, :, None]
+                if links is not None and links.clock_model == "epoch" and k:
+                    clocks = links.clocks * weight[k, :, None]
+                    H -= clocks @ (np.linalg.pinv(clocks) @ H)
+                H = H @ F
+                information += H.swapaxes(-1, -2) @ H
     return _checks.estimates("x, array, sigma_f, T", information, what="information")
 
 

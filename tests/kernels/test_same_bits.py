@@ -14,15 +14,17 @@ import pytest
 from numba import njit
 
 from dopplerlib.derive import ekf as derive
+from dopplerlib.derive import links as moving
 from dopplerlib.derive.doppler import GRADIENT, STATE, gradient_block
 from dopplerlib.derive.printers import c99_function, javascript_function
-from dopplerlib.kernels import doppler, ekf
+from dopplerlib.kernels import doppler, ekf, links
 
 RUNS, SENSORS, LANES = 37, 6, 16  # 37 leaves the last group of lanes partly empty
 BLOCKS = {block.name: block for block in derive.blocks()}
 KERNELS = {name: getattr(ekf, name) for name in BLOCKS}
 WITH_SENSOR = {"linearize", "project", "update"}
 BLOCKS["doppler_shift_and_gradient"] = gradient_block()
+BLOCKS["leg_shift_and_gradient"] = moving.gradient_block()
 
 PLACES = {}  # array and row of each symbol, by name
 for _array, _start, _symbols in [
@@ -224,13 +226,19 @@ def test_javascript_gives_the_same_bits(cycle, expected, javascript):
 
 
 @pytest.mark.parametrize("language", ["c99", "javascript", "numpy", "numba"])
-def test_shift_and_gradient_are_the_same_bits_in_every_language(language, request):
+@pytest.mark.parametrize(
+    "function", [doppler.doppler_shift_and_gradient, links.leg_shift_and_gradient]
+)
+def test_shift_and_gradient_are_the_same_bits_in_every_language(function, language, request):
     rng = np.random.default_rng(6)
+    numbers = len(BLOCKS[function.__name__].inputs) - 1
     rows = np.concatenate(
-        [rng.normal(size=(500, 9)) * 10 ** rng.uniform(-3, 3, (500, 1)), np.full((500, 1), 160.0)],
+        [
+            rng.normal(size=(500, numbers)) * 10 ** rng.uniform(-3, 3, (500, 1)),
+            np.full((500, 1), 160.0),
+        ],
         axis=1,
     ).tolist()
-    function = doppler.doppler_shift_and_gradient
     expected = np.array([function(*row) for row in rows])
     if language == "numpy":
         got = np.stack(function(*np.transpose(rows)), axis=1)
@@ -238,5 +246,5 @@ def test_shift_and_gradient_are_the_same_bits_in_every_language(language, reques
         compiled = njit(error_model="numpy")(function)
         got = np.array([compiled(*row) for row in rows])
     else:
-        got = np.array(request.getfixturevalue(language)("doppler_shift_and_gradient", rows))
+        got = np.array(request.getfixturevalue(language)(function.__name__, rows))
     assert_same_bits(got, expected)
