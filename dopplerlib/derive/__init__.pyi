@@ -5,5 +5,6 @@ from . import ekf as ekf
 from . import links as links
 from . import printers as printers
 from . import ring as ring
+from . import ring_coordinates as ring_coordinates
 from . import snapshot as snapshot
 from . import sources as sources

@@ -41,8 +41,10 @@ def python_function(block: Block) -> str:
     8
     """
     printer = Python()
-    body = [*_docstring(block), *_commented(block, printer)]
-    body.append("return " + ", ".join(_names(block.outputs, printer)))
+    returned = "return " + ", ".join(_names(block.outputs, printer))
+    if len(returned) > WIDTH:
+        returned = _wrapped(f"return ({returned.removeprefix('return ')})")
+    body = [*_docstring(block), *_commented(block, printer), *returned.split("\n")]
     return _def(printer.name(block.name), _names(block.inputs, printer), body)
 
 

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from . import doppler, ekf, links
+from . import doppler, ekf, links, ring_coordinates
 from .doppler import GRADIENT, STATE
 from .printers import python_function, python_lanes
 
@@ -21,6 +21,7 @@ def kernel_sources():
         "doppler.py": _shift_and_gradient(target.format("a fixed sensor"), doppler),
         "links.py": _shift_and_gradient(target.format("a sensor that moves"), links),
         "ekf.py": _ekf(),
+        "ring_coordinates.py": _ring_coordinates(),
     }
 
 
@@ -75,6 +76,16 @@ def _ekf():
             *layout,
             "\n",
             "\n\n".join(python_lanes(block, places) for block in ekf.blocks()),
+        ]
+    )
+
+
+def _ring_coordinates():
+    return "\n".join(
+        [
+            _head("Coordinates in which a ring of sensors sees no scale, and motion in them."),
+            "from numpy import sqrt\n\n",
+            "\n\n".join(python_function(block) for block in ring_coordinates.blocks()),
         ]
     )
 

@@ -10,6 +10,7 @@ from . import polar_radar as polar_radar
 from . import radar_array as radar_array
 from . import range_rate as range_rate
 from . import ranging_noise as ranging_noise
+from . import ring_coordinates as ring_coordinates
 from . import scenario as scenario
 from . import simulation as simulation
 from . import twin as twin

@@ -6,13 +6,17 @@ from .. import _checks
 from .._typing import ArrayLike, FloatArray
 
 
-def planar_twin(x: ArrayLike) -> FloatArray:
+def planar_twin(x: ArrayLike, radius: float = 0.0) -> FloatArray:
     """Return the twin of a state: nearly equal Doppler shifts at any array in the plane x = 0.
 
     Parameters
     ----------
     x : array_like, shape (..., 6)
         States [x, y, z, v_x, v_y, v_z] in m and m/s, with x and p.v not zero.
+    radius : float
+        Radius in m of the circle on which the sensors stand, or the root of their mean squared
+        distance from the origin. Zero stands for an array that is small beside its distance. With
+        its own radius the shifts of the paper's ring differ by 0.03 Hz instead of 0.6 Hz.
 
     Returns
     -------
@@ -27,10 +31,10 @@ def planar_twin(x: ArrayLike) -> FloatArray:
 
     Notes
     -----
-    State and twin have the same p.p and p.v. With kappa = p.v / p.p, the components in the plane
-    are p' = 2 v / kappa - 3 p and v' = v + kappa (p' - p). The shifts of sensors in the plane
-    x = 0 near the origin differ by terms of third order in the size of the array over the
-    distance only; `dopplerlib.derive.snapshot` has the proof.
+    State and twin have the same p.p and p.v. With kappa = p.v / (p.p + r^2) of the radius r, the
+    components in the plane are p' = 2 v / kappa - 3 p and v' = v + kappa (p' - p). The shifts of
+    sensors in the plane x = 0 near the origin differ by terms of third order in the size of the
+    array over the distance only; `dopplerlib.derive.ring_coordinates` has the proof.
 
     Examples
     --------
@@ -41,12 +45,13 @@ def planar_twin(x: ArrayLike) -> FloatArray:
     True
     """
     x = _checks.moderate("x", x, (6,))
+    radius = _checks.one_number("radius", radius, _checks.moderate)
     p, v = x[..., :3], x[..., 3:]
     square, w = np.sum(p * p, axis=-1), np.sum(p * v, axis=-1)
     if not ((p[..., 0] != 0) & (w != 0)).all():
         raise ValueError("x must lie off the plane of the array and have p.v other than zero")
     with np.errstate(all="ignore"):
-        kappa = (w / square)[..., None]
+        kappa = (w / (square + radius**2))[..., None]
         across = 2 * v[..., 1:] / kappa - 3 * p[..., 1:]
         across_v = v[..., 1:] + kappa * (across - p[..., 1:])
         left = square - np.sum(across * across, axis=-1)
