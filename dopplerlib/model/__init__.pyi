@@ -1,7 +1,9 @@
 # Made by python -m tools.stubs; do not edit.
 from . import ambiguity as ambiguity
+from . import broadcast_orbit as broadcast_orbit
 from . import coordinated_turn as coordinated_turn
 from . import doppler as doppler
+from . import earth as earth
 from . import information as information
 from . import iso_doppler as iso_doppler
 from . import links as links

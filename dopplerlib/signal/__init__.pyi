@@ -7,6 +7,7 @@ from . import interpolation as interpolation
 from . import laws as laws
 from . import phase as phase
 from . import recording as recording
+from . import rinex as rinex
 from . import sliding as sliding
 from . import synthesis as synthesis
 from . import validity as validity
