@@ -8,18 +8,26 @@ x = 0. Their Doppler shifts depend on a state through A = p.p + r^2, y, z, w = p
 only, and multiplying A, y, z by t^2 and w, v_y, v_z by t changes none of them, wherever on the
 circle a sensor stands. So however many sensors there are, the states of such a family look alike,
 and a Fisher information of a constant state has rank five at most.
+
+A platform that moves and turns as a whole cures none of this: seen from it the ring stands still,
+and the velocity of the target differs by a known linear function of its position. What it does is
+to turn the direction that is lost, by another amount at each time.
 """
+
+from functools import cache
 
 import sympy as sp
 
 from .._hints import checked
 from ._arguments import Expression
 from .doppler import SENSOR, STATE, WAVELENGTH, doppler_gradient, doppler_shift
+from .links import FRAME, SENSOR_VELOCITY, link_shift
 
 RADIUS = sp.Symbol("r", positive=True)
 ANGLE = sp.Symbol("varphi", real=True)  # where on the circle a sensor stands
 SCALE = sp.Symbol("t", positive=True)  # where in the family a state is; 1 is the state itself
 TURN = sp.Symbol("alpha", real=True)
+PLATFORM = sp.symbols("c_x c_y c_z", real=True)  # velocity of the ring's center; FRAME: its turn
 
 INVARIANTS = sp.symbols("A y z w v_y v_z", real=True)
 
@@ -70,11 +78,12 @@ def family_state():
     return sp.Matrix([x, y, z, (w - y * v_y - z * v_z) / x, v_y, v_z])
 
 
+@cache
 def family_direction():
     """Return the derivative of `family_state` by `SCALE` at the state itself, for x > 0."""
     ahead = sp.Symbol("x", positive=True)
     at_state = sp.diff(family_state().subs(STATE[0], ahead), SCALE).subs(SCALE, 1)
-    return at_state.applyfunc(sp.simplify).subs(ahead, STATE[0])
+    return sp.ImmutableMatrix(at_state.applyfunc(sp.simplify).subs(ahead, STATE[0]))
 
 
 def prove_invariants_suffice():
@@ -109,6 +118,34 @@ def prove_direction_is_unseen():
     on_circle = dict(zip(SENSOR, sensor_on_circle(), strict=True))
     gradient = sp.Matrix(doppler_gradient()).subs(on_circle)
     return sp.simplify(gradient.dot(family_direction()))
+
+
+def platform_direction():
+    """Return the direction that a ring does not see while it moves and turns, for x > 0."""
+    p, v, center, turn = (sp.Matrix(m) for m in (STATE[:3], STATE[3:], PLATFORM, FRAME))
+    seen = dict(zip(STATE[3:], v - center - turn.cross(p), strict=True))
+    direction = family_direction().subs(seen, simultaneous=True)
+    position, velocity = direction[:3, :], direction[3:, :]
+    return sp.Matrix([*position, *(velocity + turn.cross(position))])
+
+
+def prove_rigid_motion_is_no_cure():
+    """Return the derivative of the shift along `platform_direction`, for any sensor on the ring.
+
+    It is freed of its denominator x D^(3/2), with the squared range D: that leaves a polynomial.
+    """
+    s = sensor_on_circle()
+    velocity = sp.Matrix(PLATFORM) + sp.Matrix(FRAME).cross(s)
+    on_ring = dict(zip((*SENSOR, *SENSOR_VELOCITY), (*s, *velocity), strict=True))
+    apart = sp.Matrix(STATE[:3]) - sp.Matrix(SENSOR)
+    square = apart.dot(apart)
+    M = (link_shift() * sp.sqrt(square) * WAVELENGTH).subs(on_ring)  # the shift without its root
+    D = square.subs(on_ring)
+    along = (STATE[0] * platform_direction()).applyfunc(sp.expand)
+    dM, dD = (sp.Matrix([sp.diff(f, c) for c in STATE]).dot(along) for f in (M, D))
+    polynomial = sp.Poly(2 * D * dM - M * dD, sp.cos(ANGLE), sp.sin(ANGLE))
+    one = sp.Poly(sp.cos(ANGLE) ** 2 + sp.sin(ANGLE) ** 2 - 1, *polynomial.gens)
+    return sp.rem(polynomial, one).as_expr()
 
 
 def prove_mirror_looks_alike():

@@ -80,20 +80,33 @@ def fisher_information(
             H = doppler_jacobian(x, array) * np.sqrt(np.sum(weight**2, axis=0))[:, None]
             information = H.swapaxes(-1, -2) @ H
         else:
+            F = np.tile(np.eye(n), (len(times), 1, 1))
+            clocks = np.zeros((len(array), 0))
+            if isinstance(array, DopplerLinks):
+                array = array.sampled(len(times), T)
+                F[1:] = array.transition(times[1:] - times[0])
+                if array.clock_model == "epoch":
+                    clocks = array.clocks
+            moving = likelihood == "constant_velocity"
+            F[:, :3, 3:6] = moving * (times - times[0])[:, None, None] * np.eye(3)
             information = np.zeros((*x.shape, n))
-            links = None if isinstance(array, RadarArray) else array.sampled(len(times), T)
-            for k, t in enumerate(times - times[0]):
-                F, here = np.eye(n), array
-                if links is not None:
-                    F, here = (links.transition(t) if k else F), links.at_sample(k)
-                F[:3, 3:6] = t * np.eye(3) * (likelihood == "constant_velocity")
-                H = doppler_jacobian(x @ F.T, here) * weight[k, :, None]
-                if links is not None and links.clock_model == "epoch" and k:
-                    clocks = links.clocks * weight[k, :, None]
-                    H -= clocks @ (np.linalg.pinv(clocks) @ H)
-                H = H @ F
+            for k, H in enumerate(_jacobians(x, F, array)):
+                H = H * weight[k, :, None]
+                if k and clocks.size:
+                    C = clocks * weight[k, :, None]
+                    H = H - C @ (np.linalg.pinv(C) @ H)
+                H = H @ F[k]
                 information += H.swapaxes(-1, -2) @ H
     return _checks.estimates("x, array, sigma_f, T", information, what="information")
+
+
+def _jacobians(x, F, array):
+    """Yield the Jacobian (..., N, n) at each sample, of which `F` is the transition."""
+    if isinstance(array, RadarArray):  # the same for all: one sample after the other fits memory
+        yield from (doppler_jacobian(x @ F_k.T, array) for F_k in F)
+    else:
+        path = np.einsum("kij,...j->...ki", F, x)
+        yield from np.moveaxis(doppler_jacobian(path, array), -3, 0)
 
 
 def free_components(free: ArrayLike | None, n: int) -> BoolArray:

@@ -16,6 +16,7 @@ STATES = np.array([[0.833, 0.111, 0.092, -0.75, -0.125, -0.018], [0.4, -0.5, 0.3
         ring.prove_invariants_suffice,
         ring.prove_family_looks_alike,
         ring.prove_direction_is_unseen,
+        ring.prove_rigid_motion_is_no_cure,
         ring.prove_mirror_looks_alike,
         ring.prove_turn_looks_alike,
         ring.prove_circling_is_unseen,
@@ -38,6 +39,17 @@ def test_a_sensor_off_the_circle_sees_the_direction(place):
     values |= dict(zip(doppler.STATE, STATES[0], strict=True)) | {doppler.WAVELENGTH: 0.0125}
     # The largest gradient is 160 Hz per m/s; rounding leaves some 1e-13 of it.
     assert abs(float(seen.subs(values))) > 1e-3
+
+
+def test_halves_of_a_ring_that_turn_against_each_other_do_not_share_a_direction():
+    # Of each half one direction is lost, and they are not the same: nothing is lost by both.
+    turn = dict(zip(ring.FRAME, (2, 0, 0), strict=True)) | dict.fromkeys(ring.PLATFORM, 0)
+    turn |= dict(zip(doppler.STATE, STATES[0], strict=True)) | {ring.RADIUS: 0.2}
+    one, other = (ring.platform_direction().subs(turn | {ring.FRAME[0]: rate}) for rate in (2, -2))
+    pair = np.array(one.row_join(other), float)
+    assert np.linalg.svd(pair / np.linalg.norm(pair, axis=0), compute_uv=False)[1] > 0.1
+    at_rest = np.array(ring.platform_direction().subs(turn | {ring.FRAME[0]: 0}), float)
+    np.testing.assert_allclose(at_rest[:, 0], ring_family_direction(STATES[0], 0.2), rtol=1e-12)
 
 
 @pytest.mark.parametrize("state", STATES)

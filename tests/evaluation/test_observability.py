@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from dopplerlib import RadarArray, crlb, doppler_jacobian, doppler_shift, ml_initialize, ring_family
+from dopplerlib import (
+    DopplerLinks,
+    RadarArray,
+    crlb,
+    doppler_jacobian,
+    doppler_shift,
+    ml_initialize,
+    ring_family,
+)
 from dopplerlib.evaluation.observability import nearest_ambiguity, observable_rank, rms_bounds
 from dopplerlib.model.twin import planar_twin
 
@@ -94,3 +102,32 @@ def test_noise_chooses_the_second_valley_as_often_as_predicted(second):
 def test_a_second_ring_leaves_nothing_to_be_confused_with():
     array = RadarArray(np.vstack([RING.positions, RING.positions / 2]))
     assert nearest_ambiguity(STATE, array, SIGMA_F, 100, T, BOX)[1] < 1e-3
+
+
+def platform(array, velocity, rate, times=(0.0,)):
+    return DopplerLinks.on_platform(array, [0, 0, 0, *velocity], rate, times)
+
+
+def test_a_ring_that_moves_as_a_whole_sees_five_directions_and_one_that_is_bent_six():
+    rng = np.random.default_rng(14)
+    twelve = RadarArray.ring(12, 0.2)
+    x = rng.normal([2, 0, 0, 0, 0, 0], 1, (20, 6))
+    for _ in range(5):
+        links = platform(twelve, *rng.normal(size=(2, 3)) * 3)
+        assert (observable_rank(x, links) == 5).all()
+    two = [platform(twelve, [0, 0, 0], [rate, 0, 0]).receivers for rate in (3.0, -3.0)]
+    halves = np.concatenate([two[0][:, ::2], two[1][:, 1::2]], axis=1)
+    bent = DopplerLinks.two_way(halves, times=[0.0])
+    assert (observable_rank(x, bent) == 6).all()
+
+
+def test_a_platform_that_goes_straight_sees_a_target_at_rest_like_a_target_that_comes():
+    u, K, times = np.array([5.0, 1, -2]), 40, 0.002 * np.arange(40)
+    x = np.array([2.0, 0.3, -0.4, 0, 0, 0])
+    driven = platform(RING, u, [0, 0, 0], times)
+    driven = crlb(x, driven, SIGMA_F, likelihood="constant_velocity")
+    comes = crlb(x - [0, 0, 0, *u], RING, SIGMA_F, K, times[1], "constant_velocity")
+    # Correlations of some 1e-4 less than one cost as many digits of sixteen.
+    np.testing.assert_allclose(driven, comes, rtol=1e-8)
+    # Both at rest, no shift depends on the position.
+    assert observable_rank(x, RING, K, times[1], "constant_velocity") == 3
