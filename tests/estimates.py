@@ -11,6 +11,7 @@ import numpy as np
 
 from dopplerlib import RadarArray, TrackManager, doppler_shift, kf
 from dopplerlib.estimation import (
+    colored_errors,
     extended_kalman,
     extended_update,
     imm,
@@ -20,6 +21,7 @@ from dopplerlib.estimation import (
     radial_velocity,
     smoother,
     steady_state,
+    thinning,
     variable_projection,
 )
 from dopplerlib.estimation.imm_records import ImmModel
@@ -70,6 +72,14 @@ CALLS = {
     smoother.rts_smooth: {"x": track.x, "P": track.P, "F": F, "Q": Q},
     steady_state.steady_state_gain: {"F": F, "Q": Q, "H": H, "R": R},
     steady_state.steady_state_lag: {"F": F, "H": H, "K": [[0.5], [0.4]], "push": [0.1, 0.2]},
+    colored_errors.augment_linear: {
+        "F": F, "Q": Q, "H": H, "R": R, "x0": x, "P0": P, "sigma": 0.3, "tau": 2.0, "T": 0.5,
+    },
+    colored_errors.augment_functions: {
+        "f": lambda x: x @ F.T, "F": lambda x: F, "Q": Q, "R": R, "x0": x, "P0": P,
+        "sigma": 0.3, "tau": 2.0, "T": 0.5,
+    } | nonlinear,
+    thinning.remedy_errors: {"F": F, "Q": Q, "H": H, "rho": 0.8, "every": 3, "sigma": 2.0},
     radial_velocity.radial_velocity_terms: {"x": x, "P": P, "sigma": 0.1},
     radial_velocity.radial_velocity_update: {"x": x, "P": P, "z": 0.3, "sigma": 0.1},
     extended_kalman.ekf: {
@@ -120,7 +130,14 @@ def call(function, **changed):
 
 
 def results(value):
-    """Return the arrays and numbers of a result, of records and lists of them as well."""
+    """Return the arrays and numbers of a result, of records and lists of them as well.
+
+    A function is told by its value at a state with an error beside it.
+    """
+    if callable(value):
+        return results(value(np.arange(1.0, n + m + 1)))
+    if isinstance(value, dict):
+        return results([*value.values()])
     if isinstance(value, (list, tuple)):
         return [one for part in value for one in results(part)]
     if hasattr(value, "__dataclass_fields__"):

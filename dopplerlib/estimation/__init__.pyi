@@ -1,4 +1,5 @@
 # Made by python -m tools.stubs; do not edit.
+from . import colored_errors as colored_errors
 from . import covariances as covariances
 from . import densities as densities
 from . import extended_kalman as extended_kalman
@@ -15,5 +16,6 @@ from . import recursion as recursion
 from . import sigma_points as sigma_points
 from . import smoother as smoother
 from . import steady_state as steady_state
+from . import thinning as thinning
 from . import track as track
 from . import variable_projection as variable_projection

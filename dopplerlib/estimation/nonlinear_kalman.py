@@ -26,7 +26,7 @@ def ekf_records(
     P0: ArrayLike,
     *,
     wrap: Iterable[int] = (),
-    gate: Literal["upper", "two-sided"] | None = None,
+    gate: Literal["upper", "two-sided", "soft"] | None = None,
     gate_probability: float = 0.95,
 ) -> Track:
     """Filter whole records with an extended Kalman filter, for any motion and measurement.
@@ -57,8 +57,11 @@ def ekf_records(
     wrap : iterable of int
         Components of the measurement that are angles in rad: their innovations are brought into
         [-pi, pi).
-    gate : {None, "upper", "two-sided"}
-        Which measurements are used, see `ekf`. A refused one leaves the state predicted.
+    gate : {None, "upper", "two-sided", "soft"}
+        Which measurements are used, see `ekf`. A refused one leaves the state predicted. "soft"
+        refuses none: above the quantile of "upper", S is taken for larger by so much that NIS is at
+        that quantile. The farther off a measurement is, the less it counts, but never nothing: a
+        filter that is off by twenty deviations comes back.
     gate_probability : float
         Probability of the gate.
 
@@ -79,7 +82,8 @@ def ekf_records(
 
     Notes
     -----
-    Bar-Shalom, Li, Kirubarajan (2001), Sec 10.3; covariances are sums of squares.
+    Bar-Shalom, Li, Kirubarajan (2001), Sec 10.3; covariances are sums of squares. Chang (2014) for
+    the soft gate.
 
     Examples
     --------
@@ -118,7 +122,7 @@ def ukf(
     beta: float = 2.0,
     kappa: float = 0.0,
     wrap: Iterable[int] = (),
-    gate: Literal["upper", "two-sided"] | None = None,
+    gate: Literal["upper", "two-sided", "soft"] | None = None,
     gate_probability: float = 0.95,
 ) -> Track:
     """Filter whole records with an unscented or cubature Kalman filter, without Jacobians.
@@ -152,8 +156,11 @@ def ukf(
         Second spread, usually 0 or 3 - n.
     wrap : iterable of int
         Components of the measurement that are angles in rad.
-    gate : {None, "upper", "two-sided"}
-        Which measurements are used, see `ekf`. A refused one leaves the state predicted.
+    gate : {None, "upper", "two-sided", "soft"}
+        Which measurements are used, see `ekf`. A refused one leaves the state predicted. "soft"
+        refuses none: above the quantile of "upper", S is taken for larger by so much that NIS is at
+        that quantile. The farther off a measurement is, the less it counts, but never nothing: a
+        filter that is off by twenty deviations comes back.
     gate_probability : float
         Probability of the gate.
 
@@ -219,6 +226,8 @@ def _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability):
     R = _checks.each_sample("R", _checks.covariance("R", R, m), K, (m, m))
     x0 = _checks.each_run("x0", x0, batch, (n,))
     P0 = _checks.each_run("P0", P0, batch, (n, n))
-    bounds = gate_bounds(gate, m, gate_probability)
+    _checks.one_of("gate", gate, (None, "upper", "two-sided", "soft"))
+    soft = gate == "soft"
+    bounds = *gate_bounds("upper" if soft else gate, m, gate_probability), soft
     wrap = _checks.components("wrap", wrap, m)
     return z, Q, R, x0, P0, wrap, bounds if gate else None

@@ -18,7 +18,7 @@ from .track import Track
 
 Predict = Callable[[int, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 Correct = Callable[[int, FloatArray, FloatArray], tuple[FloatArray, ...]]
-Bounds = tuple[FloatArray, FloatArray]
+Bounds = tuple[FloatArray, FloatArray, bool]
 
 
 def scan(
@@ -53,7 +53,9 @@ def cycle(
     The state is (x, P) at the sample before k. `predict` takes k, x and P and returns x and P at
     the sample k. `correct` takes k and the predicted x and P, and returns the innovation (..., m),
     NaN where a measurement is missing, and what `gaussian.gain` returns. `bounds` is a gate on NIS
-    for 0, 1, ... components that are measured, see `gate_bounds`.
+    for 0, 1, ... components that are measured, see `gate_bounds`, and whether it is soft: what is
+    above it counts as if S were larger by so much that NIS is at the bound (Chang 2014). The gain
+    is smaller by that factor, and so is what the update takes from P.
 
     Returned are the state after the update, and x, P, innovation, S, NIS and whether the state was
     updated; without a gate the latter two are left to `filter_records`, which computes them for the
@@ -65,7 +67,12 @@ def cycle(
     if bounds is None:
         return (x_after, P_after), (x_after, P_after, innovation, S)
     nis, count = densities.quadratic_form(innovation, S), _count(innovation)
-    updated = (count > 0) & (bounds[0][count] <= nis) & (nis <= bounds[1][count])
+    lower, upper, soft = bounds
+    updated = (count > 0) & (lower[count] <= nis) & (soft | (nis <= upper[count]))
+    if soft:
+        weight = np.where(nis > upper[count], upper[count] / nis, 1.0)
+        x_after = _part_way(x, x_after, weight[..., None])
+        P_after = _part_way(P, P_after, weight[..., None, None])
     x = np.where(updated[..., None], x_after, x)
     P = np.where(updated[..., None, None], P_after, P)
     return (x, P), (x, P, innovation, S, nis, updated)
@@ -104,6 +111,10 @@ def finite(names: str, track: Track) -> Track:
     _checks.estimates(names, track.x, track.P, track.S, innovation[~np.isnan(innovation)])
     _checks.estimates("z", np.where(_count(innovation) > 0, track.nis, 0.0))
     return track
+
+
+def _part_way(before, after, weight):
+    return np.where(weight < 1, before + weight * (after - before), after)
 
 
 def _count(innovation):

@@ -93,7 +93,7 @@ def test_a_singular_start_and_no_process_noise_are_taken(name):
 
 
 @every_filter
-@pytest.mark.parametrize("gate", [None, "upper", "two-sided"])
+@pytest.mark.parametrize("gate", [None, "upper", "two-sided", "soft"])
 def test_sample_by_sample_it_is_the_whole_record(name, gate):
     whole = FILTERS[name](HOLES, gate=gate, gate_probability=0.6)
     state = {"x0": x0, "P0": P0}
@@ -118,6 +118,35 @@ def test_what_is_refused_leaves_the_state_as_if_it_were_missing(name, gate):
     left = FILTERS[name](np.where(passed[..., None], HOLES, np.nan))
     np.testing.assert_array_equal(track.x, left.x)
     np.testing.assert_array_equal(track.P, left.P)
+
+
+@every_filter
+def test_behind_a_soft_gate_noise_is_as_large_as_brings_nis_to_the_bound(name):
+    """One component: S is larger by NIS over the bound, if R is larger by the rest (Chang 2014)."""
+    one = {"h": lambda x: x @ H[:1].T, "R": R[:1, :1]}
+    if name == "ekf":
+        one |= {"H": lambda x: H[:1]}
+    track = FILTERS[name](HOLES[..., :1], **one, gate="soft", gate_probability=0.6)
+    there = ~np.isnan(track.nis)
+    np.testing.assert_array_equal(track.updated, there)
+    bound = gate_bounds("upper", 1, 0.6)[1][1]
+    more = np.where(there, np.maximum(track.nis / bound, 1) - 1, 0)
+    assert 0.1 < (more[there] > 0).mean() < 0.9  # both happen
+    for run in range(runs):
+        noise = R[:1, :1] + (more * track.S[..., 0, 0])[run, :, None, None]
+        want = kf(HOLES[run, :, :1], F, Q, H[:1], noise, x0, P0)
+        np.testing.assert_allclose(track.x[run], want.x, rtol=1e-7, atol=1e-7)
+        np.testing.assert_allclose(track.P[run], want.P, rtol=1e-7, atol=1e-7)
+
+
+def test_behind_a_soft_gate_a_filter_that_is_lost_comes_back():
+    """A start that is off by 20 deviations: a gate that refuses does not open again."""
+    seen, one = np.random.default_rng(1).standard_normal((200, 1)), np.eye(1)
+    still = {"f": lambda x: x, "F": lambda x: one, "h": lambda x: x, "H": lambda x: one}
+    still |= {"Q": 1e-4 * one, "R": one, "x0": [20.0], "P0": one, "gate_probability": 0.99}
+    soft, hard = (ekf_records(seen, gate=gate, **still) for gate in ("soft", "upper"))
+    assert not hard.updated.any()
+    assert np.abs(soft.x[100:, 0]).max() < 1
 
 
 @pytest.mark.parametrize("gate", [None, "upper", "two-sided"])
