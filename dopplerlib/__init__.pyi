@@ -20,10 +20,10 @@ from .estimation.imm import imm as imm
 from .estimation.imm import imm_start as imm_start
 from .estimation.imm import imm_step as imm_step
 from .estimation.imm_records import ImmModel as ImmModel
+from .estimation.initial_estimate import InitialEstimate as InitialEstimate
 from .estimation.linear_kalman import kf as kf
 from .estimation.linear_kalman import kf_predict as kf_predict
 from .estimation.linear_kalman import kf_update as kf_update
-from .estimation.maximum_likelihood import InitialEstimate as InitialEstimate
 from .estimation.maximum_likelihood import ml_initialize as ml_initialize
 from .estimation.nonlinear_kalman import ekf_records as ekf_records
 from .estimation.nonlinear_kalman import ukf as ukf

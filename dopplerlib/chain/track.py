@@ -10,7 +10,7 @@ from .. import _checks
 from .._hints import Positive, Real, checked
 from .._records import record
 from .._typing import ArrayLike, BoolArray, FloatArray, IntArray
-from ..estimation.maximum_likelihood import IMPLAUSIBLE, ImplausibleStart
+from ..estimation.initial_estimate import LARGEST_SCALE, ImplausibleStart
 from ..estimation.track import Track
 from ..model.motion import constant_velocity
 from ..signal.frequency import ml_frequency
@@ -122,10 +122,11 @@ class IqTrack:
     def plausible(self) -> BoolArray:
         """Whether chi-square of the initial estimate is at most 100 times its degrees of freedom.
 
-        Shape (...). If not, no straight flight in the box explains the shifts, or there was no
-        start; for the usual reasons see `InitialEstimate.plausible`.
+        Shape (...). The deviations are those of the bound for a steady tone, so real ones may be
+        larger, up to ten times as in `InitialEstimate.plausible`. If not, no straight flight in
+        the box explains the shifts, or there was no start; for the usual reasons see there.
         """
-        return self.score[..., 0].min(axis=-1) <= IMPLAUSIBLE * np.maximum(self.degrees, 1)
+        return self.score[..., 0].min(axis=-1) <= LARGEST_SCALE**2 * np.maximum(self.degrees, 1)
 
     @property
     def final_nis(self) -> FloatArray:
@@ -398,7 +399,7 @@ def _of_each(values, chosen):
 
 def _warn_unless_plausible(costs, degrees):
     cost = np.fmin.reduce(costs, axis=1)
-    wrong = np.flatnonzero(cost > IMPLAUSIBLE * np.maximum(degrees, 1))
+    wrong = np.flatnonzero(cost > LARGEST_SCALE**2 * np.maximum(degrees, 1))
     if len(wrong):
         i = wrong[0]
         warnings.warn(

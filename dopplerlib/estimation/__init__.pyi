@@ -7,6 +7,7 @@ from . import extended_update as extended_update
 from . import gaussian as gaussian
 from . import imm as imm
 from . import imm_records as imm_records
+from . import initial_estimate as initial_estimate
 from . import linear_kalman as linear_kalman
 from . import maximum_likelihood as maximum_likelihood
 from . import models as models

@@ -15,7 +15,7 @@ from scipy.stats import chi2
 from dopplerlib import RadarArray, iq_from_geometry, nis
 from dopplerlib.chain.baseband import Baseband
 from dopplerlib.chain.track import track_iq
-from dopplerlib.estimation.maximum_likelihood import ImplausibleStart
+from dopplerlib.estimation.initial_estimate import ImplausibleStart
 from dopplerlib.signal.impairments import add_dc, add_iq_imbalance
 from dopplerlib.signal.recording import Recording, write_sigmf
 from dopplerlib.signal.synthesis import complex_noise

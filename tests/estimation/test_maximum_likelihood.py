@@ -29,6 +29,7 @@ CASES = {
 STATE = np.array([0.5, 0.2, 0.1, -1.0, 0.5, 0.3])
 FIELDS = (
     "x", "P", "cost", "at_bound", "identifiable", "converged", "second_x", "second_cost", "degrees",
+    "weights", "scale",
 )  # fmt: skip
 
 each_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES)
@@ -277,11 +278,13 @@ def test_an_active_bound_is_flagged():
     x = STATE * (PLANE[0] < PLANE[1])
     box = PLANE.copy()
     box[1, 0] = 0.4  # nearer than the target
-    start = ml_initialize(doppler_shift(path(x, 10), LINE), LINE, 0.1, T, box)
-    assert start.at_bound.tolist() == [True, False, False, False, False, False]
-    assert start.x[0] == 0.4
-    assert start.converged and start.identifiable
-    assert start.cost > 1e-3
+    # With one deviation the shifts fit the nearest state in the box, with another they cannot.
+    for sigma_f, plausible in ((5.0, True), (0.1, False)):
+        start = ml_initialize(doppler_shift(path(x, 10), LINE), LINE, sigma_f, T, box)
+        assert start.at_bound.tolist() == [True, False, False, False, False, False]
+        assert start.x[0] == 0.4
+        assert start.identifiable and start.cost > 1e-3
+        assert start.converged == start.plausible == plausible
 
 
 def test_of_equally_likely_states_the_one_nearest_to_the_center_of_the_box_is_taken():

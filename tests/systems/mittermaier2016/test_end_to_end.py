@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from dopplerlib import crlb, doppler_shift
 from dopplerlib.chain.simulation import simulate_baseband
-from dopplerlib.estimation.maximum_likelihood import ImplausibleStart
+from dopplerlib.estimation.initial_estimate import ImplausibleStart
 from dopplerlib.signal.frequency import ml_frequency_dc
 from dopplerlib.signal.laws import overlap_correlation
 from dopplerlib.systems import mittermaier2016 as paper
