@@ -9,6 +9,7 @@ from . import phase as phase
 from . import recording as recording
 from . import rinex as rinex
 from . import sliding as sliding
+from . import spectrogram as spectrogram
 from . import synthesis as synthesis
 from . import validity as validity
 from . import waveforms as waveforms

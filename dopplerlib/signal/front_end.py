@@ -56,22 +56,15 @@ def lowpass(x, fs, cutoff, taps, valid=None):
     >>> y.shape, delay, bool(np.allclose(y[20:], 1))
     ((50,), 0.01, True)
     """
-    from scipy import signal  # here: it takes long to load
+    from scipy.signal import oaconvolve  # here: it takes long to load
 
     x, valid = known_samples("x", x, valid, (None,))
-    fs = _checks.moderate_number("fs", fs)
-    taps = _checks.whole_number("taps", taps)
-    if taps % 2 == 0:
-        raise ValueError(f"taps must be odd, or the delay is half a sample off, got {taps}")
-    cutoff = _checks.positive_number("cutoff", cutoff)
-    if not cutoff < fs / 2:
-        raise ValueError(f"cutoff must be less than fs / 2 = {fs / 2:g}, got {cutoff:g}")
-    b = signal.firwin(taps, cutoff, fs=fs)
+    b, delay = _impulse_response(fs, cutoff, taps)
     with np.errstate(all="ignore"):
-        y = signal.oaconvolve(x, b.reshape((1,) * (x.ndim - 1) + (-1,)), axes=-1)
+        y = oaconvolve(x, b.reshape((1,) * (x.ndim - 1) + (-1,)), axes=-1)
     _checks.estimates("x", y, what="filtered samples")
-    y, delay = y[..., : x.shape[-1]], (taps - 1) / 2 / fs
-    return (y, delay) if valid is None else (y, delay, _filtered(valid, taps))
+    y = y[..., : x.shape[-1]]
+    return (y, delay) if valid is None else (y, delay, _filtered(valid, len(b)))
 
 
 @overload
@@ -113,8 +106,10 @@ def lowpass_decimate(x, fs, factor, taps=None, valid=None):
 
     Notes
     -----
-    The filter lets half of the amplitude through at half the new rate. Near there, what lies
-    beyond is folded back; up to 80 % of half the new rate the passband is flat to 1 %.
+    `scipy.signal.upfirdn` with the filter of `lowpass`, whose outputs it gives, but computes only
+    those that are kept. The filter lets half of the amplitude through at half the new rate. Near
+    there, what lies beyond is folded back; up to 80 % of half the new rate the passband is flat to
+    1 %.
 
     Examples
     --------
@@ -126,11 +121,35 @@ def lowpass_decimate(x, fs, factor, taps=None, valid=None):
     factor = _checks.whole_number("factor", factor)
     fs = _checks.moderate_number("fs", fs)
     taps = 20 * factor + 1 if taps is None else _checks.whole_number("taps", taps)
+    x, valid = known_samples("x", x, valid, (None,))
     if factor == 1:
-        x, valid = known_samples("x", x, valid, (None,))
         return (x, fs, 0.0) if valid is None else (x, fs, 0.0, valid)
-    y, delay, *kept = lowpass(x, fs, fs / (2 * factor), taps, valid)
-    return y[..., ::factor], fs / factor, delay, *(v[..., ::factor] for v in kept)
+    from scipy.signal import upfirdn
+
+    b, delay = _impulse_response(fs, fs / (2 * factor), taps)
+    y = np.empty((*x.shape[:-1], -(-x.shape[-1] // factor)), complex)
+    if x.size:
+        with np.errstate(all="ignore"):
+            # I and Q apart: SciPy would multiply complex samples by a complex filter.
+            y.real = upfirdn(b, x.real, down=factor)[..., : y.shape[-1]]
+            y.imag = upfirdn(b, x.imag, down=factor)[..., : y.shape[-1]]
+    _checks.estimates("x", y, what="filtered samples")
+    kept = () if valid is None else (_filtered(valid, taps)[..., ::factor],)
+    return y, fs / factor, delay, *kept
+
+
+def _impulse_response(fs, cutoff, taps):
+    """Return a linear-phase low-pass filter (taps,), and its delay in s."""
+    from scipy.signal import firwin
+
+    fs = _checks.moderate_number("fs", fs)
+    taps = _checks.whole_number("taps", taps)
+    if taps % 2 == 0:
+        raise ValueError(f"taps must be odd, or the delay is half a sample off, got {taps}")
+    cutoff = _checks.positive_number("cutoff", cutoff)
+    if not cutoff < fs / 2:
+        raise ValueError(f"cutoff must be less than fs / 2 = {fs / 2:g}, got {cutoff:g}")
+    return firwin(taps, cutoff, fs=fs), (taps - 1) / 2 / fs
 
 
 def _filtered(valid, taps):
