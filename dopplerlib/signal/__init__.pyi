@@ -6,6 +6,7 @@ from . import impairments as impairments
 from . import interpolation as interpolation
 from . import laws as laws
 from . import phase as phase
+from . import real_tone as real_tone
 from . import recording as recording
 from . import rinex as rinex
 from . import sliding as sliding

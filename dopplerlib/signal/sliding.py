@@ -10,13 +10,16 @@ from .._hints import Count, Positive, checked, up_to
 from .._records import record
 from .._typing import ArrayLike, FloatArray
 from ._bins import about_mean, sum_of_ones, unmoving
+from ._quadratures import explained, relative_information
 from .frequency import ml_frequency, ml_frequency_dc, peaks
 from .laws import crlb_frequency_std, crlb_frequency_std_dc
+from .real_tone import ml_frequency_real, ml_frequency_real_dc
 from .validity import LARGEST, known_samples
 
 _TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}
 _AT_ONCE = 2**14  # samples in the windows of one call of an estimator: a quarter of a megabyte
 _MOST = 2**40  # samples in a window
+_REAL = (ml_frequency_real, ml_frequency_real_dc)
 _FINEST = 1e-6  # bins: so much the search for the peak leaves, see `_ml_kernel`
 
 
@@ -36,9 +39,12 @@ class DopplerRecord:
         Doppler shifts in Hz, however weak the signal is; NaN where there is none: a sample is not
         valid, all are the same, or the estimator finds none.
     amp2 : ndarray, shape (..., K, S)
-        Squares of the amplitudes at these frequencies; 0 where `frequency` is NaN.
+        Squares of the amplitudes at these frequencies; 0 where `frequency` is NaN. Of real samples,
+        twice the mean power of the tone in the window.
     noise_variance : ndarray, shape (..., K, S)
-        Estimated variances of a complex noise sample; NaN where a sample is not valid.
+        Estimated variances of a complex noise sample; NaN where a sample is not valid. Of real
+        samples, four times their own: so much has complex noise that is as dense where their
+        analytic signal is.
     window : int
         Samples of a window.
     hop : int
@@ -47,6 +53,10 @@ class DopplerRecord:
         Sampling rate in Hz.
     dc_fitted : bool
         Whether the windows hold a constant that was estimated together with the tone.
+    quadrature : ndarray, shape (..., K, S), optional
+        Fraction of the energy of a tone in real samples that is even about the middle of the
+        window, on which its deviation depends; None for complex samples. The signs of the
+        frequencies are then those of the band that was searched: the samples do not tell them.
     """
 
     time: np.ndarray
@@ -57,6 +67,7 @@ class DopplerRecord:
     hop: Count
     fs: Positive
     dc_fitted: bool = False
+    quadrature: np.ndarray | None = None
 
     def __post_init__(self):
         frequency = _checks.measured("frequency", self.frequency, (None, None))
@@ -65,6 +76,12 @@ class DopplerRecord:
             "amp2": _checks.finite("amp2", self.amp2),
             "noise_variance": _checks.measured("noise_variance", self.noise_variance, ()),
         }
+        if self.quadrature is not None:
+            arrays["quadrature"] = _checks.finite("quadrature", self.quadrature)
+            if (arrays["quadrature"] > 1).any():
+                raise ValueError(
+                    f"quadrature must be at most 1, got {arrays['quadrature'].max():g}"
+                )
         for name, value in arrays.items():
             if value.shape != frequency.shape:
                 raise ValueError(
@@ -85,9 +102,8 @@ class DopplerRecord:
         off, and so is what the mean of 1 / noise_variance is too large. Noise alone may leave it
         negative. It is 0 where `frequency` is NaN, and infinite where there is no noise.
         """
-        n, unknowns = self.window, 5 if self.dc_fitted else 3
-        # The noise variance is chi-square distributed, with 2 n - unknowns degrees of freedom.
-        dof = n - unknowns / 2
+        # The noise variance is chi-square distributed, with twice as many degrees of freedom.
+        dof = _noise_dof(self.window, self.dc_fitted, self.quadrature is not None) / 2
         size = np.where(np.isnan(self.frequency), 1.0, self._size())
         with np.errstate(all="ignore"):
             ratio = self.amp2 / self.noise_variance * ((dof - 1) / dof) - 1.5 / size
@@ -106,7 +122,9 @@ class DopplerRecord:
         snr = self.snr
         usual = (snr > 0) & np.isfinite(snr)
         some, f = np.where(usual, snr, 1.0), np.where(usual, self.frequency, 0.0)
-        if self.dc_fitted:
+        if self.quadrature is not None:
+            bound = self._bound_of_real(f, some)
+        elif self.dc_fitted:
             bound = crlb_frequency_std_dc(f, some, self.window, self.fs)
         else:
             bound = crlb_frequency_std(some, self.window, self.fs)
@@ -136,10 +154,20 @@ class DopplerRecord:
         known = std < self.fs
         return np.where(known, self.frequency, np.nan), np.where(known, std, self.fs)
 
+    def _bound_of_real(self, f, snr):
+        """Return `crlb_frequency_std_real` at the phase of each tone."""
+        n = self.window
+        with np.errstate(all="ignore"):
+            # Where the frequency is missing any will do: its deviation is infinite all the same.
+            f = np.where(self.amp2 > 0, f, self.fs / 4)
+            told = relative_information(self.quadrature, f, n, self.fs, self.dc_fitted)
+            bound = self.fs / (2 * np.pi) / np.sqrt(2 * n * snr * told)
+        return np.where(told > 0, bound, np.inf)
+
     def _size(self):
         """Return the energy of a tone of amplitude 1 in n samples, less that of its mean."""
         n = self.window
-        if not self.dc_fitted:
+        if not self.dc_fitted or self.quadrature is not None:
             return n
         with np.errstate(all="ignore"):
             return n - sum_of_ones(self.frequency * n / self.fs, n)[0] ** 2 / n
@@ -172,9 +200,12 @@ def sliding_doppler(
     estimator : callable
         A function ``(x, fs, band)`` of this package, such as `ml_frequency`. With
         `ml_frequency_dc` itself, amplitude, noise and deviations are those beside a constant; with
-        every other one those of a tone alone, for which a constant is noise.
+        `ml_frequency_real` and `ml_frequency_real_dc` those of the real parts of the samples, which
+        come from a module without Q; with every other one those of a tone alone, for which a
+        constant is noise.
     band : tuple of float, optional
-        Lowest and highest frequency in Hz; -fs/2 and fs/2 if None.
+        Lowest and highest frequency in Hz; -fs/2 and fs/2 if None. For real samples of one sign,
+        which is that of the shifts.
     timestamp : {"center", "end", "start"}
         Which moment of the window its time is. The frequency of a window is that at its center:
         with another timestamp, it is late or early by half the window.
@@ -191,13 +222,14 @@ def sliding_doppler(
     ------
     ValueError
         If a valid sample is not finite or beyond 1e140, `window` does not fit into the record or is
-        less than 3 (4 with `ml_frequency_dc`), a number is not positive, `timestamp` is none of the
-        three, or `estimator` is no function or refuses its arguments.
+        less than 3 (4 with `ml_frequency_dc`, 5 for real samples), a number is not positive,
+        `timestamp` is none of the three, or `estimator` is no function or refuses its arguments.
 
     Notes
     -----
     The noise variance is what the fit leaves, ``n mean |x|^2 - n amp2``, over n - 1.5: of 2n real
-    numbers, frequency, phase and amplitude take three. A constant takes two more.
+    numbers, frequency, phase and amplitude take three. A constant takes two more. Of n real samples
+    the tone takes three, a constant one.
 
     Examples
     --------
@@ -212,8 +244,9 @@ def sliding_doppler(
     if largest > LARGEST:
         raise ValueError(f"x must not exceed {LARGEST:g}, or its square is lost, got {largest:g}")
     fs = _checks.moderate_number("fs", fs)
-    constant = _checks.function("estimator", estimator) is ml_frequency_dc
-    window = _checks.whole_number("window", window, least=4 if constant else 3)
+    real = _checks.function("estimator", estimator) in _REAL
+    constant = estimator in (ml_frequency_dc, ml_frequency_real_dc)
+    window = _checks.whole_number("window", window, least=5 if real else 4 if constant else 3)
     hop = _checks.whole_number("hop", hop)
     part = _TAGS[_checks.one_of("timestamp", timestamp, tuple(_TAGS))]
     n = x.shape[-1]
@@ -221,17 +254,18 @@ def sliding_doppler(
         raise ValueError(f"window must be at most the {n} samples of the record, got {window}")
     firsts = np.arange(0, n - window + 1, hop)
     records = x.reshape(-1, n)
-    estimate = _by_peaks if estimator is ml_frequency else _by_call
+    estimate = _by_peaks if estimator is ml_frequency else _of_real if real else _by_call
     with np.errstate(under="ignore"):
-        f, amp2, noise = estimate(records, fs, window, firsts, estimator, band)
+        f, amp2, noise, *share = estimate(records, fs, window, firsts, estimator, band)
     if valid is not None:
         gone = _touched(~valid.reshape(-1, n), window, firsts)
         f[gone], amp2[gone], noise[gone] = np.nan, 0.0, np.nan
-    values = f, amp2, noise
     shape = (*x.shape[:-1], len(firsts))
-    f, amp2, noise = (np.swapaxes(v.reshape(shape), -1, -2) for v in values)
+    f, amp2, noise, *share = (
+        np.swapaxes(v.reshape(shape), -1, -2) for v in (f, amp2, noise, *share)
+    )
     time = (firsts + part * (window - 1)) / fs
-    return DopplerRecord(time, f, amp2, noise, window, hop, fs, constant)
+    return DopplerRecord(time, f, amp2, noise, window, hop, fs, constant, *share)
 
 
 def _by_peaks(records, fs, n, firsts, _, band):
@@ -274,6 +308,31 @@ def _by_call(records, fs, n, firsts, estimator, band):
             n - (2.5 if constant else 1.5)
         )
     return f.reshape(shape), amp2.reshape(shape), noise.reshape(shape)
+
+
+def _of_real(records, fs, n, firsts, estimator, band):
+    """Return the same of the real parts, and the fraction of the energy in even quadratures."""
+    records, constant = records.real, estimator is ml_frequency_real_dc
+    shape, rows, starts = _places(records, firsts)
+    windows = np.lib.stride_tricks.sliding_window_view(records, n, axis=-1)
+    f, power, share, energy = np.empty((4, len(rows)))
+    step = max(1, _AT_ONCE // n)
+    for a in range(0, len(rows), step):
+        part = slice(a, a + step)
+        y = windows[rows[part], starts[part]]
+        f[part] = estimator(y, fs, band)
+        y = about_mean(y) if constant else y
+        energy[part] = np.sum(y**2, axis=-1)
+        known = np.where(np.isnan(f[part]), fs / 4, f[part])
+        power[part], share[part] = explained(y, known, fs, constant)
+    power[np.isnan(f)] = 0.0
+    noise = 4 * np.maximum(energy - power, 0.0) / _noise_dof(n, constant, real=True)
+    return tuple(v.reshape(shape) for v in (f, 2 * power / n, noise, share))
+
+
+def _noise_dof(n, constant, real):
+    """Return the degrees of freedom of the residuals of a tone, which takes three."""
+    return n - 3 - constant if real else 2 * n - 3 - 2 * constant
 
 
 def _energies(records, n, firsts):
