@@ -3,16 +3,19 @@
 import os
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
 from .. import _checks
-from .._hints import Index, Probability, checked
+from .._hints import Index, Probability, between, checked
 from .._typing import ArrayLike, FloatArray
 from ..model.doppler import check_clear_of_sensors
+from ..model.links import DopplerLinks, state_size
 from ..model.motion import dwna_gain
 from ..model.radar_array import RadarArray
+from ._ekf_general import filter_general, general_motion
 from .track import Track
 
 _OPTIONAL = ("P", "innovation", "S")
@@ -21,16 +24,18 @@ _OPTIONAL = ("P", "innovation", "S")
 @_checks.quiet
 def ekf(
     z: ArrayLike,
-    array: RadarArray,
+    array: RadarArray | DopplerLinks,
     x0: ArrayLike,
     P0: ArrayLike,
     T: ArrayLike,
     sigma_a: float,
     sigma_f: ArrayLike,
     noise: Literal["shared", "per_axis"] = "shared",
-    gate: Literal["upper", "two-sided"] | None = None,
+    gate: Literal["upper", "two-sided", "soft"] | None = None,
     *,
     gate_probability: float = 0.95,
+    sigma_clock: float = 0.0,
+    sigma_drift: float = 0.0,
     keep: Iterable[str] = _OPTIONAL,
     workers: int | None = None,
 ) -> Track:
@@ -42,15 +47,18 @@ def ekf(
     ----------
     z : array_like, shape (..., K, N)
         Doppler measurements in Hz; NaN says that this sensor is missing at this sample.
-    array : RadarArray
-        The N sensors.
+    array : RadarArray or DopplerLinks
+        The N sensors or links.
     x0 : array_like, shape (..., 6)
-        State [x, y, z, v_x, v_y, v_z] in m and m/s one interval *before* the first sample.
+        State [x, y, z, v_x, v_y, v_z] in m and m/s one interval *before* the first sample; of links
+        (..., n), with offsets and rates of their clocks.
     P0 : array_like, shape (..., 6, 6)
         Covariance of `x0`; it may be singular: a component can be known exactly. Leading axes of
-        `x0` and `P0` broadcast against those of `z`.
+        `x0` and `P0` broadcast against those of `z`. Of links (..., n, n).
     T : array_like, scalar or shape (K,)
-        Sampling interval in s; with uneven times the interval before each sample.
+        Sampling interval in s; with uneven times the interval before each sample. Links that go
+        straight are at time zero at the first sample. Of links with times only the first interval
+        matters, and the others have to be those between the times, if they are given.
     sigma_a : float
         Standard deviation of the acceleration in m/s^2, see `constant_velocity`.
     sigma_f : array_like, broadcast to (K, N)
@@ -58,25 +66,30 @@ def ekf(
         each sample and sensor.
     noise : {"shared", "per_axis"}
         Process noise, see `constant_velocity`.
-    gate : {None, "upper", "two-sided"}
+    gate : {None, "upper", "two-sided", "soft"}
         Which measurements are used. None: all. "upper": those whose NIS is below the chi-square
         quantile `gate_probability`. "two-sided": those whose NIS is inside the central interval of
         that probability, which also refuses measurements that fit too well; Fig 6 of the paper
         shows this one. The degrees of freedom are the number of sensors that are there. A
-        refused measurement leaves the state predicted.
+        refused measurement leaves the state predicted. "soft": see `ekf_records`.
     gate_probability : float
         Probability of the gate.
+    sigma_clock, sigma_drift : float
+        Process noise of the clocks of links, see `DopplerLinks.motion`: Hz and Hz/s after one
+        second. For clocks of the model "epoch" `sigma_clock` is the standard deviation of each new
+        offset, which is eliminated if it is large against what offsets can be; a million times
+        `sigma_f` still leaves the differences between links their digits.
     keep : sequence of {"P", "innovation", "S"}
         Fields of the result that are wanted; the others are None. Ten thousand runs of a
         thousand samples need 2.9 GB for P alone.
     workers : int, optional
-        Threads among which the runs are shared; one for each processor if None. The result does
-        not depend on it.
+        Threads among which the runs of a RadarArray are shared; one for each processor if None.
+        The result does not depend on it.
 
     Returns
     -------
     Track
-        Leading axes are those of `z`; n = 6, m = N.
+        Leading axes are those of `z`; n = 6 or that of the links, m = N.
 
     Raises
     ------
@@ -96,6 +109,9 @@ def ekf(
     Should a prediction meet a sensor later on, or overflow, then NIS is NaN although something
     was measured, and ``updated`` is False.
 
+    Links, and the soft gate, go through the recursion of `ekf_records`: an update by all sensors at
+    once, not compiled. There, a prediction that meets a sensor is an error.
+
     Examples
     --------
     Sixteen records of a tenth of a second, from a start that is about right:
@@ -113,24 +129,32 @@ def ekf(
     >>> track.x.shape, track.P.shape, track.nis.shape
     ((16, 100, 6), (16, 100, 6, 6), (16, 100))
     """
-    _checks.instance("array", array, RadarArray)
+    n = state_size(_checks.instance("array", array, (RadarArray, DopplerLinks)))
     z = _measurements(z, array)
     T = _intervals(T, z.shape[-2])
     G, sigma_a = dwna_gain(T, sigma_a, noise)
     columns = np.ascontiguousarray(sigma_a * np.swapaxes(G, -1, -2))
     variance = _variance(sigma_f, z.shape[-2:])
-    lower, upper = gate_bounds(gate, len(array), gate_probability)
-    x0 = _checks.finite("x0", x0, (6,))
-    check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
-    P0 = _checks.covariance("P0", P0, 6, definite=False)
+    _checks.one_of("gate", gate, (None, "upper", "two-sided", "soft"))
+    soft = gate == "soft"
+    lower, upper = gate_bounds("upper" if soft else gate, len(array), gate_probability)
+    clocks = _clock_noise(n > 6, sigma_clock=sigma_clock, sigma_drift=sigma_drift)
+    x0 = _checks.finite("x0", x0, (n,))
+    P0 = _checks.covariance("P0", P0, n, definite=False)
     keep = _checks.some_of("keep", keep, _OPTIONAL)
     if workers is not None:
         workers = _checks.whole_number("workers", workers)
 
     batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
     runs = int(np.prod(batch))
-    x0 = _checks.each_run("x0", x0, batch, (6,))
-    P0 = _checks.each_run("P0", P0, batch, (6, 6))
+    x0 = _checks.each_run("x0", x0, batch, (n,))
+    P0 = _checks.each_run("P0", P0, batch, (n, n))
+    if soft or isinstance(array, DopplerLinks):
+        array, motion = general_motion(array, T, samples, sigma_a, noise, *clocks)
+        bounds = (lower, upper, soft) if gate else None
+        track = filter_general(z, array, x0, P0, motion, variance, bounds)
+        return replace(track, **{name: None for name in _OPTIONAL if name not in keep})
+    check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
     z, x0, P0 = (
         np.ascontiguousarray(value).reshape(runs, *value.shape[len(batch) :])
         for value in (z, x0, P0)
@@ -232,6 +256,11 @@ def _measurements(z, array):
             f"z must be finite, or NaN where a sensor is missing, got {z[place]} at index {place}"
         )
     return z
+
+
+def _clock_noise(there, **sigmas):
+    """Return the process noise of the clocks; without any it has to be zero."""
+    return [between(0, 1e60 if there else 0)(name, value) for name, value in sigmas.items()]
 
 
 def _intervals(T, samples):
