@@ -63,7 +63,7 @@ class ManagedTrack:
 def track_scans(
     scans: Iterable[ArrayLike],
     F: ArrayLike,
-    Q: ArrayLike,
+    Q: ArrayLike | Callable[..., Any],
     h: Callable[..., Any],
     H: Callable[..., Any],
     R: ArrayLike | Callable[..., Any],
@@ -82,8 +82,11 @@ def track_scans(
     scans : iterable of array_like, shape (detections, m)
         Measurements of each scan; their number may vary, also to none. One with a NaN in it is not
         there: detections with other components cannot be compared.
-    F, Q : array_like, shape (n, n)
-        Transition matrix; covariance of the process noise between two scans.
+    F : array_like, shape (n, n)
+        Transition matrix from one scan to the next.
+    Q : array_like, shape (n, n), or callable
+        Covariance of the process noise between two scans. A function takes the states (tracks, n)
+        before the step and returns one for each, (tracks, n, n).
     h, H : callable
         Measurement function and its Jacobian, see `ekf_update`.
     R : array_like, shape (m, m), or callable
@@ -114,7 +117,7 @@ def track_scans(
     Raises
     ------
     ValueError
-        If shapes do not fit, also those that `start`, `h`, `H`, `R`, `assign` and `new` return; a
+        If shapes do not fit, also those that `start`, `h`, `H`, `Q`, `R`, `assign`, `new` return; a
         value is not finite, also of an estimate; `Q` or `R` is not a covariance, or `R` so small
         that the covariance of an innovation is singular to rounding; `manager` is no TrackManager;
         or `gate_probability` is not between 0 and 1.
@@ -149,7 +152,8 @@ def track_scans(
     F = _checks.matrix("F", F, (None, None))
     n = F.shape[0]
     F = _checks.matrix("F", F, (n, n))
-    Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
+    if not callable(Q):
+        Q = _checks.matrix("Q", _checks.covariance("Q", Q, n, definite=False), (n, n))
     size = chdtri(m, 1 - _checks.probability("gate_probability", gate_probability))
     _checks.instance("manager", manager, TrackManager)
     wrap = _checks.components("wrap", wrap, m)
@@ -180,7 +184,11 @@ def track_scans(
         free = np.ones(len(z), bool)
         if alive:
             x, P = (np.stack([track[name][-1] for track in alive]) for name in ("x", "P"))
-            x, P = gaussian.predict(x, P, F, Q)
+            step = Q
+            if callable(Q):
+                step = _checks.covariance("Q(x)", _checks.called("Q", Q, x), n, definite=False)
+                _checks.check_shape("Q(x)", step, (len(x), n, n))
+            x, P = gaussian.predict(x, P, F, step)
             _checks.estimates("F, Q", x, P)
             nu, K, updated, cost = gated(x, P, z)
             first = np.array([track["confirmed"][-1] for track in alive])
