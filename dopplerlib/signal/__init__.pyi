@@ -1,14 +1,19 @@
 # Made by python -m tools.stubs; do not edit.
+from . import cfar as cfar
+from . import detections as detections
 from . import frequency as frequency
 from . import front_end as front_end
 from . import fsk as fsk
 from . import impairments as impairments
 from . import interpolation as interpolation
 from . import laws as laws
+from . import noise_spectrum as noise_spectrum
+from . import peak_detection as peak_detection
 from . import phase as phase
 from . import real_tone as real_tone
 from . import recording as recording
 from . import rinex as rinex
+from . import scatter as scatter
 from . import sliding as sliding
 from . import spectrogram as spectrogram
 from . import synthesis as synthesis

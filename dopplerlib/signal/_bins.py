@@ -6,6 +6,7 @@ import scipy.fft
 from .. import _checks
 from .._records import record
 
+TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}  # place of a timestamp in its window
 _LARGE = 1e140  # energies; squares of what is beyond leave the range of double precision
 
 
@@ -52,6 +53,13 @@ def still_windows(x):
     rows = x.reshape(-1, x.shape[-1])
     place = np.arange(len(rows))
     return unmoving(rows, place, np.zeros_like(place), rows.shape[1]).reshape(x.shape[:-1])
+
+
+def touched(bad, n, firsts):
+    """Return which windows of n samples, from `firsts` on, hold a sample that is bad (R, K)."""
+    count = np.zeros((len(bad), bad.shape[1] + 1), dtype=int)
+    np.cumsum(bad, axis=-1, out=count[:, 1:])
+    return count[:, firsts + n] > count[:, firsts]
 
 
 def ratio(a, b):

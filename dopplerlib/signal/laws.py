@@ -1,11 +1,14 @@
 """Performance of frequency estimates: bounds, thresholds, window lengths, correlation."""
 
+from typing import Literal
+
 import numpy as np
 
 from .. import _checks
 from .._hints import AboveZero, checked
 from .._typing import ArrayLike, FloatArray
 from ._bins import sum_of_ones
+from ._tapers import error_correlation, weights
 
 # The variance of a frequency estimate from a window of length T is VARIANCE / (cn0 T^3).
 _VARIANCE = 6 / (2 * np.pi) ** 2
@@ -229,7 +232,9 @@ def overlap_correlation(tau: ArrayLike) -> FloatArray:
 
 
 @checked
-def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
+def overlap_correlation_discrete(
+    n: int, lag: ArrayLike, taper: Literal["rectangular", "hann"] = "rectangular"
+) -> FloatArray:
     """Return the correlation between the errors of two overlapping windows of n samples.
 
     Parameters
@@ -238,6 +243,8 @@ def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
         Samples of a window, at least 2.
     lag : array_like of int, shape (...)
         Distance of the windows in samples.
+    taper : {"rectangular", "hann"}
+        Weights of the samples, as in `detect_peaks`.
 
     Returns
     -------
@@ -245,9 +252,9 @@ def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
 
     Notes
     -----
-    The error is the noise weighted with the distance from the middle of the window. In the
-    m = n - lag samples in common, the products of these weights add up to
-    (m (m^2 - 1) - 3 m lag^2) / 12.
+    The error is the noise weighted with the distance from the middle of the window, and with the
+    taper. Without one, in the m = n - lag samples in common the products of these weights add up
+    to (m (m^2 - 1) - 3 m lag^2) / 12.
 
     Examples
     --------
@@ -256,6 +263,8 @@ def overlap_correlation_discrete(n: int, lag: ArrayLike) -> FloatArray:
     """
     n = _checks.whole_number("n", n, least=2)
     lag = np.minimum(np.abs(_checks.finite("lag", lag)), n)
+    if taper == "hann":
+        return error_correlation(weights(taper, n), lag)
     m = n - lag
     products = np.where(m > 0, m * (m**2 - 1 - 3 * lag**2), 0.0)
     return products / (n * (n**2 - 1))

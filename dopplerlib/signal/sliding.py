@@ -9,14 +9,13 @@ from .. import _checks
 from .._hints import Count, Positive, checked, up_to
 from .._records import record
 from .._typing import ArrayLike, FloatArray
-from ._bins import about_mean, sum_of_ones, unmoving
+from ._bins import TAGS, about_mean, sum_of_ones, touched, unmoving
 from ._quadratures import explained, relative_information
 from .frequency import ml_frequency, ml_frequency_dc, peaks
 from .laws import crlb_frequency_std, crlb_frequency_std_dc
 from .real_tone import ml_frequency_real, ml_frequency_real_dc
 from .validity import LARGEST, known_samples
 
-_TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}
 _AT_ONCE = 2**14  # samples in the windows of one call of an estimator: a quarter of a megabyte
 _MOST = 2**40  # samples in a window
 _REAL = (ml_frequency_real, ml_frequency_real_dc)
@@ -248,7 +247,7 @@ def sliding_doppler(
     constant = estimator in (ml_frequency_dc, ml_frequency_real_dc)
     window = _checks.whole_number("window", window, least=5 if real else 4 if constant else 3)
     hop = _checks.whole_number("hop", hop)
-    part = _TAGS[_checks.one_of("timestamp", timestamp, tuple(_TAGS))]
+    part = TAGS[_checks.one_of("timestamp", timestamp, tuple(TAGS))]
     n = x.shape[-1]
     if window > n:
         raise ValueError(f"window must be at most the {n} samples of the record, got {window}")
@@ -258,7 +257,7 @@ def sliding_doppler(
     with np.errstate(under="ignore"):
         f, amp2, noise, *share = estimate(records, fs, window, firsts, estimator, band)
     if valid is not None:
-        gone = _touched(~valid.reshape(-1, n), window, firsts)
+        gone = touched(~valid.reshape(-1, n), window, firsts)
         f[gone], amp2[gone], noise[gone] = np.nan, 0.0, np.nan
     shape = (*x.shape[:-1], len(firsts))
     f, amp2, noise, *share = (
@@ -343,13 +342,6 @@ def _energies(records, n, firsts):
     )
     hop = firsts[1] - firsts[0] if len(firsts) > 1 else 1
     return windows[:, : firsts[-1] + 1 : hop].sum(axis=-1)
-
-
-def _touched(bad, n, firsts):
-    """Return which windows hold a sample that is bad (R, K)."""
-    count = np.zeros((len(bad), bad.shape[1] + 1), dtype=int)
-    np.cumsum(bad, axis=-1, out=count[:, 1:])
-    return count[:, firsts + n] > count[:, firsts]
 
 
 def _places(records, firsts):
