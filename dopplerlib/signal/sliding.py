@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from .. import _checks
-from .._hints import Count, Positive, checked, up_to
+from .._hints import Count, Positive, Probability, checked, up_to
 from .._records import record
 from .._typing import ArrayLike, FloatArray
-from ._bins import TAGS, about_mean, sum_of_ones, touched, unmoving
+from ._bins import TAGS, about_mean, limits, sum_of_ones, touched, unmoving
 from ._quadratures import explained, relative_information
 from .frequency import ml_frequency, ml_frequency_dc, peaks
 from .laws import crlb_frequency_std, crlb_frequency_std_dc
@@ -56,6 +56,8 @@ class DopplerRecord:
         Fraction of the energy of a tone in real samples that is even about the middle of the
         window, on which its deviation depends; None for complex samples. The signs of the
         frequencies are then those of the band that was searched: the samples do not tell them.
+    band_width : float, optional
+        Width in Hz of the band that was searched; all frequencies if None.
     """
 
     time: np.ndarray
@@ -67,6 +69,7 @@ class DopplerRecord:
     fs: Positive
     dc_fitted: bool = False
     quadrature: np.ndarray | None = None
+    band_width: Positive | None = None
 
     def __post_init__(self):
         frequency = _checks.measured("frequency", self.frequency, (None, None))
@@ -130,14 +133,42 @@ class DopplerRecord:
         finest = _FINEST * self.fs / self.window
         return np.where(snr > 0, np.maximum(np.where(usual, bound, 0.0), finest), np.inf)
 
-    def measurements(self) -> tuple[FloatArray, FloatArray]:
+    @property
+    def noise_probability(self) -> FloatArray:
+        """Probability that white noise alone gives a peak as high in the band, shape (..., K, S).
+
+        That of a fraction of the energy at one frequency, times the number of places for a peak by
+        Rice's formula; 1 at most, and where `frequency` is NaN. It does not depend on the power of
+        the noise. Of noise that is not white it says little: see `detect_peaks`.
+        """
+        n, real = self.window, self.quadrature is not None
+        left = _noise_dof(n, self.dc_fitted, real) / 2
+        all_of_them = self.fs / 2 if real else self.fs
+        width = all_of_them if self.band_width is None else min(self.band_width, all_of_them)
+        with np.errstate(all="ignore"):
+            # Half the real numbers that are left beside the two of the tone and the constant.
+            dimensions = n / 2 - 1 - self.dc_fitted / 2 if real else n - 1 - self.dc_fitted
+            ratio = self.amp2 * self._size() / self.noise_variance
+            height = dimensions * np.log1p(ratio / left)
+            places = 1 + width * n / self.fs * np.sqrt(np.pi / 3 * height)
+            chance = np.where(np.isinf(height), 0.0, places * np.exp(-height))
+        return np.where(self.amp2 > 0, np.minimum(chance, 1.0), 1.0)
+
+    @checked
+    def measurements(self, false_alarm: Probability = 1e-3) -> tuple[FloatArray, FloatArray]:
         """Return frequencies and standard deviations as `ekf` and `ml_initialize` take them.
+
+        Parameters
+        ----------
+        false_alarm : float
+            Probability that a window of white noise is taken for a measurement, at most.
 
         Returns
         -------
         z : ndarray, shape (..., K, S)
-            `frequency` in Hz; NaN, which means missing, where `frequency_std` is not less than
-            `fs`: so wide is what a frequency may be in without any sample.
+            `frequency` in Hz; NaN, which means missing, where `noise_probability` is larger than
+            `false_alarm`, or `frequency_std` is not less than `fs`: so wide is what a frequency may
+            be in without any sample.
         sigma_f : ndarray, shape (..., K, S)
             `frequency_std` in Hz. Where `z` is NaN it is `fs`: a filter wants a number there, and
             does not use it.
@@ -150,7 +181,7 @@ class DopplerRecord:
         [[79.6, nan], [79.6, nan]]
         """
         std = self.frequency_std
-        known = std < self.fs
+        known = (std < self.fs) & (self.noise_probability <= false_alarm)
         return np.where(known, self.frequency, np.nan), np.where(known, std, self.fs)
 
     def _bound_of_real(self, f, snr):
@@ -264,7 +295,11 @@ def sliding_doppler(
         np.swapaxes(v.reshape(shape), -1, -2) for v in (f, amp2, noise, *share)
     )
     time = (firsts + part * (window - 1)) / fs
-    return DopplerRecord(time, f, amp2, noise, window, hop, fs, constant, *share)
+    low, high, _ = limits(band, fs)
+    quadrature = share[0] if share else None
+    return DopplerRecord(
+        time, f, amp2, noise, window, hop, fs, constant, quadrature, max(high - low, fs / n)
+    )
 
 
 def _by_peaks(records, fs, n, firsts, _, band):
