@@ -41,7 +41,7 @@ def to_ring_coordinates(x: ArrayLike, radius: Positive) -> FloatArray:
     [[0.14, 0.14, -0.67, -0.18], [0.14, 0.14, -0.67, 0.23]]
     """
     x = _checks.moderate("x", x, (6,))
-    *seen, rho = kernel.to_coordinates(*np.moveaxis(x, -1, 0), radius)
+    *seen, rho = kernel.to_coordinates(*np.moveaxis(x, -1, 0), r=radius)
     return _checks.estimates("x, radius", np.stack([*seen, np.log(rho)], axis=-1))
 
 
@@ -76,7 +76,7 @@ def from_ring_coordinates(xi: ArrayLike, radius: Positive) -> FloatArray:
     """
     xi = _checks.moderate("xi", xi, (6,))
     *seen, scale = np.moveaxis(xi, -1, 0)
-    state = np.stack(kernel.to_state(*seen, np.exp(scale), radius)[:6], axis=-1)
+    state = np.stack(kernel.to_state(*seen, rho=np.exp(scale), r=radius)[:6], axis=-1)
     if not np.isfinite(state).all():
         place = tuple(int(i) for i in np.argwhere(~np.isfinite(state))[0][:-1])
         raise ValueError(
