@@ -15,6 +15,7 @@ from ..estimation.track import Track
 from ..model.motion import constant_velocity
 from ..signal.frequency import ml_frequency
 from ..signal.impairments import correct_iq_imbalance, remove_mean
+from ..signal.lines import near_lines, remove_lines
 from ..signal.sliding import sliding_doppler
 from ._hypotheses import filters, hypotheses, parts
 from .baseband import Baseband
@@ -236,6 +237,8 @@ def track_iq(
     remove_dc: bool = True,
     dc_until: float | None = None,
     balance: bool = True,
+    lines: ArrayLike = (),
+    line_width: Positive = 4.0,
     estimator: Callable[..., Any] = ml_frequency,
     variance_inflation: Positive = 1.0,
     least_snr: Positive = 20.0,
@@ -272,6 +275,11 @@ def track_iq(
         before there is any.
     balance : bool
         Whether the branches are made equal, see `correct_iq_imbalance`.
+    lines : array_like, shape (L,)
+        Frequencies of lines in Hz that are removed before: the hum of mains and its harmonics, 0
+        for a constant that drifts; see `remove_lines`.
+    line_width : float
+        Shifts nearer than that to a line are missing, in Hz.
     estimator : callable
         Frequency estimator of a window, see `sliding_doppler`.
     variance_inflation : float
@@ -348,6 +356,9 @@ def track_iq(
     step = n if hop is None else max(1, _length("hop", hop, iq))
     if remove_dc:
         x = _without_constant(x, valid, iq, dc_until)
+    lines = _checks.finite("lines", lines)
+    if lines.size:
+        x = remove_lines(x, iq.fs, lines, n, width=line_width, band=(-top, top), valid=valid)
     if balance:
         x = correct_iq_imbalance(x, valid)
     leading = x.shape[:-2]
@@ -355,7 +366,7 @@ def track_iq(
     d = sliding_doppler(x, iq.fs, n, step, estimator, band=(-top, top), valid=valid)
     time = iq.first + d.time - iq.delay
     available_at = iq.first + (np.arange(len(d.time)) * step + n - 1) / iq.fs
-    seen = n * d.snr >= least_snr
+    seen = (n * d.snr >= least_snr) & ~near_lines(d.frequency, lines, line_width)
     z = np.where(seen, d.frequency, np.nan)
     std = np.where(seen, d.frequency_std * np.sqrt(variance_inflation / iq.noise_gain), np.inf)
     used = int(np.sum(available_at <= _checks.positive_number("start", start) + 1e-9))

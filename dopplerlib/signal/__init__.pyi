@@ -7,6 +7,7 @@ from . import fsk as fsk
 from . import impairments as impairments
 from . import interpolation as interpolation
 from . import laws as laws
+from . import lines as lines
 from . import noise_spectrum as noise_spectrum
 from . import peak_detection as peak_detection
 from . import phase as phase
