@@ -93,11 +93,11 @@ class InitialEstimate:
         accepted = np.sum(weights > 0, axis=(-2, -1))
         most = 2 * accepted > np.sum(~np.isnan(weights), axis=(-2, -1))
         # A component on the box fits no noise: it is no unknown.
-        limit = chi_square_limit(degrees + at_bound.sum(axis=-1))
+        limit = _chi_square_limit(degrees + at_bound.sum(axis=-1))
         return np.asarray((cost <= limit) & most & (scale <= LARGEST_SCALE))
 
 
-def chi_square_limit(degrees: FloatArray) -> FloatArray:
+def _chi_square_limit(degrees: FloatArray) -> FloatArray:
     """Return the chi-square that a right model exceeds with the probability `FALSE_ALARM`."""
     from scipy.special import chdtri
 
