@@ -1,17 +1,21 @@
 """Doppler shifts of GPS satellites, read from RINEX, the common text format of receivers."""
 
 import os
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
 from .. import _checks
 from .._data import data, on_disk, read_toml
-from .._hints import checked
+from .._hints import Count, Index, checked
 from .._records import record
 from .._typing import FloatArray
 from ..model.broadcast_orbit import BroadcastOrbits
 from ._rinex import navigated, observed
+
+_COLUMNS = ("doppler", "cn0", "pseudorange", "count")  # fields of shape (K, S)
 
 
 @record
@@ -66,7 +70,7 @@ class SatelliteShifts:
             raise ValueError("times must increase, got two that do not")
         fields = {"satellites": satellites, "times": times}
         shape = (len(times), len(satellites))
-        for name in ("doppler", "cn0", "pseudorange", "count"):
+        for name in _COLUMNS:
             values = _checks.measured(name, getattr(self, name), shape)
             fields[name] = _checks.exact_shape(name, values, shape)
         if np.isnan(fields["doppler"]).all():
@@ -74,6 +78,82 @@ class SatelliteShifts:
         _checks.instance("orbits", self.orbits, BroadcastOrbits)
         position = _checks.measured("position", self.position, (3,))
         return fields | {"position": _checks.exact_shape("position", position, (3,))}
+
+    @checked
+    def part(self, first: Index, count: Count) -> "SatelliteShifts":
+        """Return a number of epochs from one of them on.
+
+        Parameters
+        ----------
+        first, count : int
+            The first epoch, from 0 on, and their number.
+
+        Examples
+        --------
+        >>> len(recorded_receiver("novatel")[0].part(10, 5).times)
+        5
+        """
+        rows = slice(first, first + count)
+        return replace(self, **{name: getattr(self, name)[rows] for name in ("times", *_COLUMNS)})
+
+    @checked
+    def without(self, satellites: Iterable[str]) -> "SatelliteShifts":
+        """Return the recording as if some satellites had not been heard.
+
+        Parameters
+        ----------
+        satellites : collection of str
+            Their names.
+
+        Examples
+        --------
+        >>> len(recorded_receiver("novatel")[0].without(["G03", "G22"]).satellites)
+        7
+        """
+        gone = _checks.some_of("satellites", satellites, self.satellites)
+        kept = [name not in gone for name in self.satellites]
+        names = tuple(name for name in self.satellites if name not in gone)
+        columns = {name: getattr(self, name)[:, kept] for name in _COLUMNS}
+        return replace(self, satellites=names, **columns)
+
+    @checked
+    def counted(self, epochs: Count = 1) -> "SatelliteShifts":
+        """Return the mean shifts over parts of the recording by the cycles counted in them.
+
+        Parameters
+        ----------
+        epochs : int
+            Intervals between epochs that a part has.
+
+        Returns
+        -------
+        SatelliteShifts
+            Each epoch is in the middle of a part; parts follow on. Where the receiver lost count
+            there is no shift.
+
+        Examples
+        --------
+        >>> recorded_receiver("novatel")[0].counted(5).doppler.shape
+        (9, 9)
+        """
+        parts = (len(self.times) - 1) // epochs
+        if not parts:
+            most = len(self.times) - 1
+            raise ValueError(
+                f"epochs must be at most {most}, the intervals there are, got {epochs}"
+            )
+        ends = np.arange(parts + 1) * epochs
+        cycles = self.count[1 : ends[-1] + 1].reshape(parts, epochs, -1).sum(axis=1)
+        cn0 = self.cn0[1 : ends[-1] + 1].reshape(parts, epochs, -1).mean(axis=1)
+        blank = np.full_like(cycles, np.nan)
+        return replace(
+            self,
+            times=(self.times[ends[1:]] + self.times[ends[:-1]]) / 2,
+            doppler=cycles / np.diff(self.times[ends])[:, None],
+            cn0=cn0,
+            pseudorange=blank,
+            count=blank,
+        )
 
 
 def read_rinex(
