@@ -42,15 +42,20 @@ def model_errors(runs: Runs, *, rng: np.random.Generator) -> dict[str, dict[str,
     s, (hard, turning) = automotive_settings(), hard_turn()
     settled = np.arange(s.samples) >= s.skip
     paths = {f"Fig {i}": path for i, path in vehicle_paths().items() if i in (7, 10, 11)}
-    found: dict[str, dict[str, FloatArray]] = {}
-    for (name, path), child in zip((paths | {"hard": hard}).items(), rng.spawn(4), strict=True):
-        z = measure_vehicle(path.truth, runs, rng=child)
-        hard_cases = {"in the turn": turning, "before it": settled & (s.time < 8)}
-        for competitor, estimate in _competitors(s).items():
-            x = estimate(z)
-            for case, where in ({name: settled} if path.figure else hard_cases).items():
-                error = rms_of_runs(x, path.truth, where, "velocity")
-                found.setdefault(case, {})[competitor] = error
+    paths["hard"] = hard
+    cases = {name: [(name, settled)] for name in paths}
+    cases["hard"] = [("in the turn", turning), ("before it", settled & (s.time < 8))]
+    children = zip(paths.values(), rng.spawn(len(paths)), strict=True)
+    z = np.concatenate([measure_vehicle(path.truth, runs, rng=child) for path, child in children])
+    found: dict[str, dict[str, FloatArray]] = {
+        case: {} for each in cases.values() for case, _ in each
+    }
+    for competitor, estimate in _competitors(s).items():
+        x = np.split(estimate(z), len(paths))  # at once: a step of a filter costs more than a run
+        for (name, path), estimates in zip(paths.items(), x, strict=True):
+            for case, where in cases[name]:
+                error = rms_of_runs(estimates, path.truth, where, "velocity")
+                found[case][competitor] = error
     return found
 
 

@@ -87,15 +87,20 @@ def test_the_smoother_is_better_than_its_filter_on_every_path_but_not_before_a_t
 def polar():
     """Return rms of the position and mean NIS by step, figure and filter: means of 12 records."""
     found, settled = {}, np.arange(S.samples) >= S.skip
+    records = [
+        paper.measure_polar(path.truth, 12, rng=np.random.default_rng(60 + figure))
+        for figure, path in PATHS.items()
+    ]
+    z = np.concatenate(records)
     for w in ENDS:
-        for figure, path in PATHS.items():
-            z = paper.measure_polar(path.truth, 12, rng=np.random.default_rng(60 + figure))
-            tracks = {"EKF": paper.track_polar(z, S.with_(w=w))}
-            for covariance in ("as along", "document", "open"):
-                tracks[covariance] = paper.track_polar_naive(z, S.with_(w=w), covariance)
-            for name, one in tracks.items():
-                rms = paper.rms_of_runs(one.x, path.truth, settled, "position").mean()
-                found[w, figure, name] = rms, one.nis[:, settled].mean()
+        tracks = {"EKF": paper.track_polar(z, S.with_(w=w))}
+        for covariance in ("as along", "document", "open"):
+            tracks[covariance] = paper.track_polar_naive(z, S.with_(w=w), covariance)
+        for name, one in tracks.items():
+            parts = (np.split(values, len(PATHS)) for values in (one.x, one.nis[:, settled]))
+            for (figure, path), x, nis in zip(PATHS.items(), *parts, strict=True):
+                rms = paper.rms_of_runs(x, path.truth, settled, "position").mean()
+                found[w, figure, name] = rms, nis.mean()
     return found
 
 
