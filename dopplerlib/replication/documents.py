@@ -1,5 +1,6 @@
 """The replicated documents, by name: claims, choices, sentences and documented deviations."""
 
+from functools import cache
 from importlib.resources.abc import Traversable
 
 from .. import _checks
@@ -152,7 +153,12 @@ def read_document(name: str) -> Document:
     >>> paper.claims[0].id
     'sensitivity'
     """
-    _checks.one_of("name", name, documents())
+    return _read(_checks.one_of("name", name, documents()))
+
+
+@cache
+def _read(name):
+    """Read a document once in a process: its files hold some thousand tables."""
     own = data(name, "choices.toml")  # a document may have none of its own
     return Document(
         name,

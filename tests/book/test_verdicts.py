@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+from functools import cache
 
 import nbformat
 import pytest
@@ -17,6 +18,8 @@ PAGES = sorted({(name, one.page) for name in documents() for one in read_documen
 RULES = {"scorecard_mittermaier2016": "sec-verdict-rules"}
 TYPED = re.compile(r"\b(reproduced|contradicted|atypical|typical|underdetermined|undecided)\b")
 ROLE = re.compile(r"\{verdict\}`([^`]*)`")
+
+judgments = cache(read_judgments)  # those of a document stand on many pages
 
 
 def extension():
@@ -36,7 +39,7 @@ def judged(page):
 @pytest.mark.parametrize(("document", "page"), PAGES)
 def test_a_page_shows_the_judged_numbers_of_its_claims(document, page):
     shown = judged(page)
-    for one in read_judgments(document):
+    for one in judgments(document):
         if one.claim.page == page:
             assert f"{one.claim.id}: {one.verdict}\n" in shown
             assert f"ours {ours(one)}" in shown, one.claim.id

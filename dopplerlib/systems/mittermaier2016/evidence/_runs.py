@@ -20,12 +20,9 @@ def starts():
     return {"Table 2": reported().table2.x_ml, "as drawn": reported().figure6.start}
 
 
-_paper = cache(lambda: read_document("mittermaier2016"))
-
-
 def choices(*names):
     """Return choices of the paper by their names, as `sweep` takes them."""
-    return _paper().choice(*names)
+    return read_document("mittermaier2016").choice(*names)
 
 
 def tracked(z, array, start, P0, sigma_a=None, noise="shared", keep=()):
