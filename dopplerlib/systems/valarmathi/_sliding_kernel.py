@@ -25,7 +25,7 @@ def _heights(new_re, new_im, old_re, old_im, height):
 
 
 def slide(re, im, loud, wave_re, wave_im, windows, first, place, power):
-    """Write `place` (W, R, K) in bins and `power` of the highest bin of each window.
+    """Write `place` (R, W, K) in bins and `power` of the highest bin of each window.
 
     `re`, `im` (R, samples) hold records, `wave_re`, `wave_im` (N, N) the powers of the N-th root
     of unity: row m, column k is exp(-2 pi j m k / N). The window of sample n ends with it; the
@@ -68,7 +68,7 @@ def slide(re, im, loud, wave_re, wave_im, windows, first, place, power):
                 continue
             for w in range(len(windows)):
                 if m - windows[w] < last:
-                    place[w, r, m - first], power[w, r, m - first] = np.nan, 0.0
+                    place[r, w, m - first], power[r, w, m - first] = np.nan, 0.0
                     continue
                 old = (m - windows[w]) % ring
                 _heights(sum_re[new], sum_im[new], sum_re[old], sum_im[old], height)
@@ -87,8 +87,8 @@ def slide(re, im, loud, wave_re, wave_im, windows, first, place, power):
                 right = np.float64(height[peak + 1 if peak < n - 1 else 0]) ** 0.5
                 bend = left - 2 * middle + right
                 shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
-                place[w, r, m - first] = peak + shift
-                power[w, r, m - first] = (middle - 0.25 * (left - right) * shift) ** 2
+                place[r, w, m - first] = peak + shift
+                power[r, w, m - first] = (middle - 0.25 * (left - right) * shift) ** 2
 
 
 compiled = cached_njit(slide, fastmath=True)

@@ -107,7 +107,8 @@ def filter_velocity(
     if code:
         if table is None or not np.array_equal(table.windows, doppler.windows):
             raise ValueError("table must be given for a feedback, and for the same windows")
-        # Copies, for numba compiles anew for an array that must not be written to.
+        # Copies, here and below: numba compiles anew, which takes ten seconds, for an array that
+        # has another layout or must not be written to.
         lookup = (
             table.accelerations.copy(),
             table.snrs_db.copy(),
@@ -134,12 +135,12 @@ def filter_velocity(
         int(np.flatnonzero(doppler.windows == window)[0]),
     )
     results = x, P, P12, fused_x, fused_P, choice, innovation, S
-    _share(
-        lambda part: compiled(
-            v[:, part], seen[:, part], *settings, *lookup, *(one[part] for one in results)
-        ),
-        runs,
-    )
+
+    def work(part):
+        measured = (one[:, part].copy() for one in (v, seen))
+        compiled(*measured, *settings, *lookup, *(one[part] for one in results))
+
+    _share(work, runs)
     return VelocityTrack(
         doppler.first, hop, x, P, P12, fused_x, fused_P, doppler.windows[choice], innovation, S
     )

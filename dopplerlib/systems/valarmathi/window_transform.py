@@ -169,17 +169,20 @@ def _peaks(rows, loud, windows, first, nfft):
     wave = np.exp(-2j * np.pi * np.arange(nfft) / nfft)[turn]
     wave_re, wave_im = wave.real.astype(np.float32), wave.imag.astype(np.float32)
     re, im = rows.real.astype(np.float32), rows.imag.astype(np.float32)
-    place = np.empty((len(windows), len(rows), rows.shape[1] - first))
+    # Numba compiles for each layout and for arrays that must not be written to: records come first,
+    # as a part of them has the layout of all, and the windows are copied.
+    windows = windows.copy()
+    place = np.empty((len(rows), len(windows), rows.shape[1] - first))
     power = np.empty_like(place)
 
     def work(part):
         compiled(
             re[part], im[part], loud[part], wave_re, wave_im, windows, first,
-            place[:, part], power[:, part],
+            place[part], power[part],
         )  # fmt: skip
 
     _share(work, len(rows))
-    return place, power
+    return tuple(np.ascontiguousarray(np.moveaxis(one, 1, 0)) for one in (place, power))
 
 
 def _share(work, count):

@@ -4,6 +4,7 @@ Where a test is about random numbers, it holds for all but the stated share of s
 written down once and are not chosen.
 """
 
+import numba
 import numpy as np
 import pytest
 from scipy.stats import norm
@@ -14,6 +15,7 @@ from dopplerlib.signal.interpolation import parabolic, parabolic_three_highest
 from dopplerlib.signal.laws import overlap_correlation_discrete
 from dopplerlib.signal.synthesis import iq_from_velocity, tone
 from dopplerlib.systems import valarmathi as system
+from dopplerlib.systems.valarmathi import _pair_kernel, _sliding_kernel
 from dopplerlib.systems.valarmathi._pair_kernel import choose
 from dopplerlib.tracking.fusion import cross_covariance_step, fuse_state_vectors
 
@@ -423,6 +425,18 @@ def test_two_sensors_together_measure_with_half_of_the_variance():
     merged, ratio = system.merged_doppler(doppler, 15.0)
     assert ratio == pytest.approx(0.5)
     np.testing.assert_allclose(merged.v[:, :, 0], doppler.v.mean(axis=2), rtol=1e-12)
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_one_run_and_several_are_of_the_same_types_to_the_compiler(runs):
+    """Else it compiles, which takes longer than most of what is computed."""
+    x = np.exp(1j * np.arange(1000.0))
+    for one in (x[None, None, :300], np.stack([[x, x]] * 3)):
+        doppler = system.doppler_filter(one, tuple(TABLE.windows))
+        system.filter_velocity(doppler, 15.0, hop=one.shape[1])
+        system.filter_velocity(doppler, 15.0, table=TABLE, feedback="own")
+    for compiled in (_pair_kernel.compiled, _sliding_kernel.compiled):
+        assert len(compiled.signatures) == 1
 
 
 def test_what_does_not_fit_is_refused(runs):
