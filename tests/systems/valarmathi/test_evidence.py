@@ -88,16 +88,18 @@ def steady_state(R, q=OWN.q):
 
 
 def filtered(v, R, q):
-    """Return states and covariances of one filter behind given measurements of one sensor."""
-    F, Q, H, _, _ = steady_state(R, q)
-    x, P = np.array([v[0], 0.0]), np.diag([R, OWN.acceleration_std**2])
+    """Return states and covariances of filters, each behind given measurements of one sensor."""
+    F, Q, H, _, _ = steady_state(R[0], q)  # the first three are the same for all
+    R, P = R[:, None, None], np.zeros((len(v), 2, 2))
+    x = np.stack([v[:, 0], np.zeros(len(v))], axis=-1)
+    P[:, 0, 0], P[:, 1, 1] = R[:, 0, 0], OWN.acceleration_std**2
     states, covariances = [x], [P]
-    for z in v[1:]:
+    for z in v.T[1:]:
         x, P = kf_predict(x, P, F, Q)
-        x, P, _, _ = kf_update(x, P, np.array([z]), H, [[R]])
+        x, P, _, _ = kf_update(x, P, z[:, None], H, R)
         states.append(x)
         covariances.append(P)
-    return np.array(states), np.array(covariances)
+    return np.stack(states, axis=1), np.stack(covariances, axis=1)
 
 
 def errors(velocity, path):
@@ -131,9 +133,9 @@ def test_one_run_of_the_sweep_has_the_errors_of_a_filter_written_anew():
     np.testing.assert_array_equal(levels, [20, 20, 10])
     v = system.doppler_filter(x, [window]).v[0, 0]
     R = system.measurement_variance(window, levels)
-    alone = [filtered(z, r, q) for z, r in zip(v, R, strict=True)]
-    shared = [filtered(v[s], np.mean(R[[0, 2]]), q) for s in (0, 2)]
-    pairs = {EQUAL: (alone[0], alone[1]), EACH: (alone[0], alone[2]), ONE: shared}
+    believed = np.array([*R, *[np.mean(R[[0, 2]])] * 2])
+    *alone, first, third = zip(*filtered(v[[0, 1, 2, 0, 2]], believed, q), strict=True)
+    pairs = {EQUAL: (alone[0], alone[1]), EACH: (alone[0], alone[2]), ONE: (first, third)}
     expected = {(EQUAL, "1"): alone[0][0][:, 0]}
     for sensors, ((x1, P1), (x2, P2)) in pairs.items():
         expected[sensors, "3"] = fuse_state_vectors(x1, P1, x2, P2)[0][:, 0]
