@@ -1,4 +1,5 @@
 # Made by python -m tools.stubs; do not edit.
+from . import alignment as alignment
 from . import cfar as cfar
 from . import detections as detections
 from . import frequency as frequency

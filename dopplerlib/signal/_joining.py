@@ -2,7 +2,7 @@
 
 import pathlib
 from collections.abc import Callable, Iterable, Iterator
-from datetime import datetime
+from datetime import UTC, datetime
 from os import PathLike
 from os.path import isfile
 from typing import NamedTuple
@@ -10,11 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _checks
+from .._typing import ArrayLike
 from ._layout import LAYOUTS, analytic, samples, turning
 from ._recording import Recording, later
 from .validity import valid_samples
 
 Path = str | PathLike[str]
+_ANY = datetime(2000, 1, 1, tzinfo=UTC)  # for recordings that tell no start
 _LIKELY = 0.6  # share of strong windows whose lines turn: 1 for I and Q, 0 to 0.5 for real channels
 
 
@@ -32,14 +34,19 @@ class Source(NamedTuple):
     lost: Callable[[int, int], np.ndarray] | None = None  # (first, count): bool (sensors, count)
 
 
-def align(recordings: Iterable[Recording]) -> Recording:
-    """Align recordings of one clock over the time that they have in common.
+def align(recordings: Iterable[Recording], delays: ArrayLike | None = None) -> Recording:
+    """Align recordings over the time that they have in common.
 
     Parameters
     ----------
     recordings : sequence of Recording
-        Of one sensor or more each, with the same sampling rate and carrier. Either all or none of
-        them tell their start; those that do not must have the same length.
+        Of one sensor or more each, with the same sampling rate and carrier. Unless there are
+        `delays`, either all or none of them tell their start; those that do not must have the same
+        length.
+    delays : array_like, shape (R,), optional
+        By how many seconds each of R recordings began after a moment, such as the start of the
+        first one; see `clock_offset`. The starts that recordings tell do not count then, except for
+        the first one's.
 
     Returns
     -------
@@ -50,7 +57,8 @@ def align(recordings: Iterable[Recording]) -> Recording:
     ------
     ValueError
         If `recordings` is no sequence of recordings, if their sampling rates or carriers differ,
-        if they have no time in common, or if their lengths differ and nothing tells their start.
+        if they have no time in common, or if their lengths differ and nothing tells their start;
+        or if `delays` are not as many finite numbers.
 
     Notes
     -----
@@ -71,11 +79,18 @@ def align(recordings: Iterable[Recording]) -> Recording:
     given = list(recordings) if isinstance(recordings, Iterable) else []
     if not given or not all(isinstance(one, Recording) for one in given):
         raise ValueError(f"recordings must be a sequence of recordings, got {recordings!r:.80}")
+    starts = [r.start for r in given]
+    if delays is not None:
+        delays = _checks.exact_shape("delays", _checks.finite("delays", delays), (len(given),))
+        moment = starts[0] or _ANY
+        starts = [later(moment, float(d - delays[0])) for d in delays]
     sources = [
-        Source(f"recordings[{i}]", r.fs, r.carrier, r.start, r.x.shape[1], 2 * len(r.x), None, None)
-        for i, r in enumerate(given)
+        Source(f"recordings[{i}]", r.fs, r.carrier, start, r.x.shape[1], 2 * len(r.x), None, None)
+        for i, (r, start) in enumerate(zip(given, starts, strict=True))
     ]
     firsts, count, start = overlap(sources)
+    if given[0].start is None:
+        start = None
     parts = [slice(first, first + count) for first in firsts]
     x = np.concatenate([r.x[:, part] for r, part in zip(given, parts, strict=True)])
     valid = np.concatenate([r.valid[:, part] for r, part in zip(given, parts, strict=True)])
