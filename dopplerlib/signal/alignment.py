@@ -128,7 +128,7 @@ def clock_offset(
     if not max(heights) > _threshold(places * parts, false_alarm):
         raise ValueError(
             "x and y must have something in common, got a highest correlation of "
-            f"{max(r.max() for r, _ in found):.2g}, which chance gives as well"
+            f"{max(r.max() for r, _ in found):.2g}, which noise gives as well"
         )
     best = int(np.argmax(heights))
     lag = int(np.argmax(found[best][0])) - firsts[best]
