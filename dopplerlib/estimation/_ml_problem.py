@@ -11,6 +11,7 @@ import numpy as np
 
 from ..kernels import doppler as kernel
 from ..model.information import SINGULAR
+from ._ml_polish import Data, Refined
 
 # Points of the search grid on each axis, by the number of axes that are free. If nothing moves the
 # grid is most of the work; if something does it is a small part, and a fine one misses less.
@@ -38,31 +39,70 @@ class Found(NamedTuple):
 class Problem(NamedTuple):
     """Unknowns and their box, a model that predicts, and a search.
 
-    `predict` (x) takes states (rows, n) and returns shifts (rows, K, N) and their derivatives
-    (rows, K, N, n); `search` (z, deviations) takes runs (runs, K, N) and deviations (K, N), and
-    with a third argument those of some samples only, which that argument numbers.
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (6,)
+        Box of the target's state at the first sample.
+    times : ndarray, shape (K,)
+        Times of the samples in s.
+    predict : callable
+        Takes states (rows, 6) and returns shifts (rows, K, N) without clocks, and their derivatives
+        (rows, K, N, 6).
+    design : ndarray, shape (K, N, C)
+        Derivatives of the shifts by the clocks.
+    epoch : bool
+        Whether clocks are others at each sample.
+    search : callable
+        Takes runs (runs, K, N) and deviations (K, N), and returns what is `Found`.
+    begin : callable
+        Takes a run (K, N), deviations, subsets (subsets, K, N) and a generator, and returns states
+        `Refined` on these subsets alone.
     """
 
     lower: np.ndarray
     upper: np.ndarray
-    unknowns: int
+    times: np.ndarray
     predict: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+    design: np.ndarray
+    epoch: bool
     search: Callable[..., Found]
+    begin: Callable[..., Refined]
+
+    @property
+    def free(self):
+        """Number of components of the target that the box does not fix."""
+        return int(np.sum(self.lower < self.upper))
+
+    def unknowns(self, there):
+        """Return the number of unknowns, clocks included, of the measurements `there` (K N,)."""
+        samples = np.sum(there.reshape(self.design.shape[:2]).any(axis=1)) if self.epoch else 1
+        return self.free + int(samples) * self.design.shape[-1]
+
+    def data(self, z, deviations, roots=None):
+        """Return the `Data` of one run (K, N)."""
+        there = ~np.isnan(z)
+        return Data(
+            self.predict, np.where(there, z, 0.0), there / deviations, self.design, self.epoch,
+            roots,
+        )  # fmt: skip
 
 
-def array_problem(array, lower, upper, T, samples, moving, workers):
-    """Return the problem of a target at constant velocity, or at rest in its state."""
+def array_problem(array, lower, upper, times, moving, workers):
+    """Return the problem of a target at constant velocity, or at rest in its state.
+
+    `times` (K,) begin at zero. More than one are needed if it is `moving`.
+    """
+    samples, every = len(times), times
+    even = samples > 1 and (times == times[1] * np.arange(samples)).all()
     free = lower < upper
     center = array.positions.mean(axis=0)
     radius = np.sqrt(np.sum((array.positions - center) ** 2, axis=1).mean())
     radius = radius if radius > 0 else array.wavelength
     speed = np.linalg.norm(np.maximum(np.abs(lower[3:]), np.abs(upper[3:])))
-    window = samples
-    if speed * T * samples > _WINDOW * radius:
-        window = max(2, int(_WINDOW * radius / (speed * T)))
+    reach = _WINDOW * radius
     points = _POINTS["constant_velocity" if moving else "stationary"][int(free[:3].sum())]
     grid, shape = _grid(lower, upper, center, radius, points)
-    times = T * np.arange(samples) if moving else np.zeros(1)
+    times = times if moving else np.zeros(1)
     unknowns = int(free.sum())
 
     def predict(x):
@@ -80,10 +120,13 @@ def array_problem(array, lower, upper, T, samples, moving, workers):
         # Here, and not above, so that importing the library does not load numba.
         from ._ml_search import search
 
-        t, first = times, min(window, samples)
-        if rows is not None and moving:
-            t = times[rows]
-            first = min(max(2, int(np.sum(rows - rows[0] < window))), len(rows))
+        t = times if rows is None or not moving else times[rows]
+        first = z.shape[1]
+        if moving and even and rows is None:
+            if speed * t[1] * first > reach:
+                first = min(max(2, int(reach / (speed * t[1]))), first)
+        elif moving:
+            first = min(max(2, int(np.sum(speed * (t - t[0]) < reach))), first)
         z, deviations = np.ascontiguousarray(z).view(), np.ascontiguousarray(deviations).view()
         # Whether an array may be written to is part of its type: numba would compile once for each.
         z.flags.writeable = deviations.flags.writeable = False
@@ -109,7 +152,17 @@ def array_problem(array, lower, upper, T, samples, moving, workers):
                 list(pool.map(part, parts))
         return Found(x, information, cost, converged, second_x, second_cost)
 
-    return Problem(lower, upper, unknowns, predict, search)
+    def begin(z, deviations, subsets, rng):
+        x = np.empty((len(subsets), 6))
+        for i, subset in enumerate(subsets):
+            rows = np.flatnonzero(subset.any(axis=1))
+            few = np.where(subset, z, np.nan)[None, rows]
+            x[i] = search(few, deviations[rows], rows).x[0]
+        x = x[np.isfinite(x).all(axis=1)]
+        return Refined(x, np.zeros((len(x), 1, 0)), np.zeros(len(x)), np.ones(len(x), bool))
+
+    design = np.zeros((samples, len(array), 0))
+    return Problem(lower, upper, every, predict, design, False, search, begin)
 
 
 def _grid(lower, upper, center, radius, points):

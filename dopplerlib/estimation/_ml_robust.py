@@ -11,11 +11,12 @@
    better.
 """
 
-from functools import partial
+from itertools import combinations, islice
+from typing import NamedTuple
 
 import numpy as np
 
-from ._ml_polish import bisquare, refine, trimmed
+from ._ml_polish import Data, Refined, bisquare, refine, trimmed
 
 SHARE, MISSED = 0.3, 1e-3  # of wrong measurements, and the probability not to draw a clean subset
 
@@ -23,96 +24,131 @@ FEW, BEST = 3, 8  # concentration steps of all subsets, and subsets that are ref
 
 ROUNDS = 20  # of scale and weights; three are usual
 
+_TRIED = 500  # sets of links that give the clocks of a sample; of 9 links and 2 clocks there are 36
+
 TIE = 1e-9  # relative difference between equal costs
 
 DISTINCT = 1e-3  # two states differ if a component does by this share of the box
 
 
+class RobustFit(NamedTuple):
+    """The best fit and the second-best, one row each if there are any; and weights and scale."""
+
+    best: Refined
+    second: Refined
+    weights: np.ndarray
+    scale: float
+
+
 def robust_fit(problem, z, deviations, estimate_scale, rng):
-    """Return state, whether it is an optimum, weights (K, N), scale, and the second-best state.
-
-    `z` (K, N) is one run with more than twice as many measurements as unknowns. The second-best
-    state comes with the cost that it has more; it is NaN if there is none. None if no subset can
-    be solved.
-    """
-    there = ~np.isnan(z)
-    values, sigma = z[there], deviations[there]
-    M, unknowns, box = values.size, problem.unknowns, (problem.lower, problem.upper)
-
-    def residuals(x, scale=1.0):
-        h, J = problem.predict(x)
-        return (h[:, there] - values) / (scale * sigma), J[:, there] / (scale * sigma)[:, None]
-
-    x = _beginnings(problem, z, deviations, there, rng)
-    if not len(x):
+    """Return the fit of one run (K, N) with enough measurements; None if no subset is solved."""
+    data = problem.data(z, deviations)
+    there, box = data.there, (problem.lower, problem.upper)
+    M, unknowns = np.sum(there), problem.unknowns(there)
+    found = problem.begin(z, deviations, _subsets(problem, there.reshape(z.shape), rng), rng)
+    if not len(found.x):
         return None
     half = trimmed((M + unknowns + 1) // 2)
-    x, cost, _ = refine(residuals, x, *box, half, FEW)
-    x, cost, _ = refine(residuals, x[np.argsort(cost, kind="stable")[:BEST]], *box, half)
-    x, scale = x[np.argsort(cost, kind="stable")], 1.0
+    found = refine(data, found.x, box, half, clocks=found.clocks, iterations=FEW)
+    found = found.of(np.argsort(found.cost, kind="stable")[:BEST])
+    found = refine(data, found.x, box, half, clocks=found.clocks)
+    found, scale = found.of(np.argsort(found.cost, kind="stable")), 1.0
     if estimate_scale:
         # The median of the absolute value of a normal error is 0.6745 of its deviation.
-        scale = np.median(np.abs(residuals(x[:1])[0])) / 0.6745 * np.sqrt(M / (M - unknowns))
+        r = residuals(data, found.of([0]))[there]
+        scale = np.median(np.abs(r)) / 0.6745 * np.sqrt(M / (M - unknowns))
     for _ in range(ROUNDS):
         scale = max(scale, 1e-150)
-        scaled = partial(residuals, scale=scale)
-        x, cost, arrived = refine(scaled, x, *box, bisquare)
-        best = [np.argmin(cost)]
-        x, cost, arrived = x[best], cost[best], arrived[best]
-        w = np.full(z.shape, np.nan)
-        w[there] = bisquare(scaled(x)[0])[1][0]
+        data = problem.data(z, scale * deviations)
+        if problem.epoch:
+            found = found._replace(clocks=np.stack([_epoch_clocks(data, x) for x in found.x]))
+        found = refine(data, found.x, box, bisquare, clocks=found.clocks)
+        found = found.of([np.argmin(found.cost)])
+        w = bisquare(residuals(data, found), data.there)[1].reshape(z.shape)
         # A measurement of weight w is one whose variance is 1 / w times as large.
         with np.errstate(divide="ignore"):
-            found = problem.search(
+            again = problem.search(
                 np.where(w > 0, z, np.nan)[None],
                 np.where(w > 0, scale * deviations / np.sqrt(w), 1.0),
             )
-        others = np.concatenate([found.x, found.second_x])
-        others = others[np.isfinite(others).all(axis=1)]
-        if not len(others):
+        x = np.concatenate([again.x, again.second_x])
+        x = x[np.isfinite(x).all(axis=1)]
+        if not len(x):
             return None
-        others, other_cost, other_arrived = refine(scaled, others, *box, bisquare)
+        others = refine(data, x, box, bisquare, clocks=np.repeat(found.clocks, len(x), axis=0))
         # The search has rules for states that are equally good: what it found goes before.
-        better = other_cost[0] < cost[0] * (1 - TIE) - TIE
-        if other_cost[0] <= cost[0] * (1 + TIE) + TIE:
-            x, cost, arrived = others[:1], other_cost[:1], other_arrived[:1]
-        apart = (np.abs(others - x) > DISTINCT * (problem.upper - problem.lower)).any(axis=1)
-        r = scaled(x)[0][0]
-        w[there] = bisquare(r[None])[1][0]
-        before, kept = scale, w[there] > 0
+        better = others.cost[0] < found.cost[0] * (1 - TIE) - TIE
+        if others.cost[0] <= found.cost[0] * (1 + TIE) + TIE:
+            found = others.of([0])
+        r = residuals(data, found)
+        w, used = bisquare(r, there)[1], scale
         if estimate_scale:
-            scale *= np.sqrt(np.sum(r[kept] ** 2) / max(kept.sum() - unknowns, 1))
-        if not better and abs(scale - before) <= 1e-9 * before:
+            kept = w > 0
+            scale *= np.sqrt(np.sum(r[kept] ** 2) / max(np.sum(kept) - problem.unknowns(kept), 1))
+        if not better and abs(scale - used) <= 1e-9 * used:
             break
-    second = np.full(x.shape[1], np.nan), np.nan
-    if apart.any():
-        best = np.argmin(np.where(apart, other_cost, np.inf))
-        second = others[best], other_cost[best] - cost[0]
-    return x[0], arrived[0], w, before, *second
+    apart = (np.abs(others.x - found.x) > DISTINCT * (box[1] - box[0])).any(axis=1)
+    second = others.of(np.flatnonzero(apart)[np.argsort(others.cost[apart])[:1]])
+    return RobustFit(found, second, w.reshape(z.shape), used)
 
 
-def _beginnings(problem, z, deviations, there, rng):
-    """Return states (subsets, n) that solve small random subsets of the measurements.
+def residuals(data: Data, found: Refined):
+    """Return standardized residuals (K N,) of one fit; zero where a measurement is missing."""
+    r = data.residuals(found.x)[0]
+    return (r + (data.columns @ found.clocks[..., None]).reshape(r.shape))[0]
+
+
+def _epoch_clocks(data, x):
+    """Return clocks (K, C) of each sample at a state: of those by few links the likeliest.
+
+    A sample whose clocks are far off has no weights that could lead back.
+    """
+    D = data.columns
+    groups, each, count = D.shape
+    r = data.residuals(x[None])[0].reshape(groups, each)
+    there = data.there.reshape(groups, each)
+    best, clocks = np.full(groups, np.inf), np.zeros((groups, count))
+    for few in islice(combinations(range(each), count), _TRIED):
+        few = list(few)
+        c = -(np.linalg.pinv(D[:, few], rcond=1e-9) @ r[:, few, None])
+        cost = bisquare(r + (D @ c)[..., 0], there)[0].sum(axis=1)
+        better = cost < best
+        best[better], clocks[better] = cost[better], c[better, :, 0]
+    return clocks
+
+
+def _subsets(problem, there, rng):
+    """Return which measurements (subsets, K, N) determine a state, and little more.
 
     Half of them are simple random samples: then a sensor that is wrong throughout is left out by
     many. The others have as many measurements of each sensor as can be, which determines more.
+    Clocks that are others at each sample need some samples with several measurements each.
     """
-    size = problem.unknowns + 1
+    places, (samples, sensors) = np.argwhere(there), there.shape
+    clocks = problem.design.shape[-1]
+    size = problem.free + 1 + (0 if problem.epoch else clocks)
+    epochs = samples
+    if problem.epoch:
+        epochs = min(samples, max(2, -(-size // max(sensors - clocks, 1))))
+        size += epochs * clocks
     draws = int(np.ceil(np.log(MISSED) / np.log1p(-((1 - SHARE) ** size))))
-    places, sensors = np.argwhere(there), z.shape[1]
-    x = []
-    for draw in range(draws * (1 + (sensors > 1))):
+    subsets = np.zeros((draws * (1 + (sensors > 1)), samples, sensors), bool)
+    for i, subset in enumerate(subsets):
         order = rng.permutation(len(places))
-        if draw >= draws:
-            # The first of every sensor in this order, then the second of each, and so on.
-            by_sensor = np.argsort(places[order, 1], kind="stable")
-            ordered = places[order[by_sensor], 1]
-            place = np.arange(len(places)) - np.searchsorted(ordered, ordered)
-            order = order[by_sensor[np.argsort(place, kind="stable")]]
-        k, n = places[order[:size]].T
-        rows, row = np.unique(k, return_inverse=True)
-        subset = np.full((1, len(rows), sensors), np.nan)
-        subset[0, row, n] = z[k, n]
-        x.append(problem.search(subset, deviations[rows], rows).x[0])
-    x = np.array(x)
-    return x[np.isfinite(x).all(axis=1)]
+        if problem.epoch:
+            chosen = rng.permutation(np.unique(places[:, 0]))[:epochs]
+            order = order[np.isin(places[order, 0], chosen)]
+            order = order[np.argsort(_rank(places[order, 0]), kind="stable")]
+        elif i >= draws:
+            order = order[np.argsort(_rank(places[order, 1]), kind="stable")]
+        subset[tuple(places[order[:size]].T)] = True
+    return subsets
+
+
+def _rank(labels):
+    """Return for each entry the number of equal ones before it."""
+    order = np.argsort(labels, kind="stable")
+    rank = np.empty(len(labels), int)
+    ordered = labels[order]
+    rank[order] = np.arange(len(labels)) - np.searchsorted(ordered, ordered)
+    return rank

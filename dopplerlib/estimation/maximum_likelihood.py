@@ -2,35 +2,42 @@
 
 import os
 from dataclasses import replace
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from .. import _checks
+from .._hints import Count, Index, checked, up_to
 from .._typing import ArrayLike
 from ..model.information import inverse_information
+from ..model.links import DopplerLinks, sample_times, state_size
 from ..model.radar_array import RadarArray
-from ._ml_polish import EFFICIENCY
+from ._ml_fit import Options, fit_run, white_roots
+from ._ml_links import links_problem
 from ._ml_problem import Found, array_problem
-from ._ml_robust import robust_fit
 from .extended_kalman import _measurements
 from .initial_estimate import InitialEstimate
 
 
+@checked
 @_checks.quiet
 def ml_initialize(
     z: ArrayLike,
-    array: RadarArray,
+    array: RadarArray | DopplerLinks,
     sigma_f: ArrayLike,
-    T: float,
+    T: ArrayLike,
     box: tuple[ArrayLike, ArrayLike],
     likelihood: Literal["constant_velocity", "stationary"] = "constant_velocity",
     *,
     at: Literal["first", "last"] = "first",
     loss: Literal["least_squares", "bisquare"] = "least_squares",
     scale: Literal["given", "estimated"] = "given",
+    correlation: ArrayLike | None = None,
+    covariance: Literal["information", "sandwich", "bootstrap"] = "information",
+    lags: Index | None = None,
+    resamples: Annotated[int, up_to(10**6, 2)] = 200,
     rng: np.random.Generator | None = None,
-    workers: int | None = None,
+    workers: Count | None = None,
 ) -> InitialEstimate:
     """Return initial estimates: the global maximum of the likelihood in a box.
 
@@ -38,18 +45,19 @@ def ml_initialize(
     ----------
     z : array_like, shape (..., K, N)
         Doppler measurements in Hz; NaN says that this sensor is missing at this sample.
-    array : RadarArray
-        The N sensors.
+    array : RadarArray or DopplerLinks
+        The N sensors, or links with C clocks.
     sigma_f : array_like, broadcast to (K, N)
         Standard deviation of the measurements in Hz.
-    T : float
-        Sampling interval in s.
+    T : array_like, scalar or shape (K,)
+        Sampling interval in s, or the interval before each sample, of which the first is without
+        effect. Links that have times keep them.
     box : pair of array_like, shape (6,)
-        Lower and upper bounds of the state at the first sample. Equal bounds fix a component:
-        z = v_z = 0 makes the problem one in a plane.
+        Lower and upper bounds of the target's state at the first sample. Equal bounds fix a
+        component: z = v_z = 0 makes the problem one in a plane. Clocks have no bounds.
     likelihood : {"constant_velocity", "stationary"}
         "constant_velocity": the target moves at constant velocity. "stationary": its state is the
-        same at all samples, Eq 10 as printed.
+        same at all samples, Eq 10 as printed. Sensors that move and clocks go on in both.
     at : {"first", "last"}
         Sample to which `x`, `P` and `second_x` belong. With "stationary" they are the
         same.
@@ -61,8 +69,24 @@ def ml_initialize(
     scale : {"given", "estimated"}
         "given": the standard deviations are those of `sigma_f`. "estimated": they are proportional
         to it, and the factor comes from the residuals.
+    correlation : array_like, shape (L,), optional
+        Correlation of the errors of a sensor, as a function of the lag in samples: 1 at lag zero,
+        0 from lag L on; as `overlap_correlation_discrete` gives it for windows that overlap. If
+        None errors are independent. With it measurements that the loss takes for wrong are left
+        out, and all others count in full.
+    covariance : {"information", "sandwich", "bootstrap"}
+        Source of `P`. "information": the deviations and correlations that are assumed. "sandwich":
+        the scatter of the residuals about the fit, whatever their deviations and for errors that
+        are correlated over up to `lags` samples and between the sensors of a sample. "bootstrap":
+        the scatter of fits to blocks of ``lags + 1`` samples, drawn with replacement. The last two
+        need many more samples than unknowns.
+    lags : int, optional
+        See `covariance`. If None, the choice of Andrews (1991) for autoregressive errors.
+    resamples : int
+        Number of fits of the bootstrap.
     rng : numpy.random.Generator, optional
-        Source of the subsets with which the loss "bisquare" begins; needed for it.
+        Source of the subsets with which the loss "bisquare" begins, and of the bootstrap; needed
+        for both.
     workers : int, optional
         Threads among which the runs are shared; one for each processor if None. The result does
         not depend on it.
@@ -70,14 +94,16 @@ def ml_initialize(
     Returns
     -------
     InitialEstimate
-        Leading axes are those of `z`. A run that is too incomplete to be solved is NaN, with
-        `converged` and `identifiable` False.
+        Leading axes are those of `z`. With links, states have n = 6 + C or 6 + 2 C components, see
+        `DopplerLinks`; `x` holds the "epoch" clocks of its sample. A run that is too incomplete to
+        be solved is NaN, with `converged` and `identifiable` False.
 
     Raises
     ------
     ValueError
         If an argument has the wrong shape, is not finite and positive where it has to be, the box
-        is empty, or even complete measurements would be fewer than the unknowns.
+        is empty, even complete measurements would be fewer than the unknowns, or `correlation` is
+        not positive definite.
 
     Notes
     -----
@@ -93,6 +119,10 @@ def ml_initialize(
     state within a few deviations, as where two vehicles' lines cross, are not told from right
     ones. `P` is that of the accepted measurements over 0.95.
 
+    Correlated errors are made white in time, sensor by sensor (generalized least squares). The
+    sandwich is that of Newey and West (1987). Clocks are eliminated from each step; links are
+    searched on a grid of positions without the rules above for states that are equally good.
+
     Examples
     --------
     >>> from dopplerlib import doppler_shift
@@ -102,27 +132,29 @@ def ml_initialize(
     >>> (ml_initialize(z, array, 0.1, 0.001, box).x.round(6) + 0.0).tolist()
     [0.5, 0.2, 0.0, -1.0, 0.5, 0.0]
     """
-    _checks.instance("array", array, RadarArray)
     z = _measurements(z, array)
-    T = _checks.positive_number("T", T)
+    samples, sensors = z.shape[-2:]
+    times = sample_times(array, samples, T)
+    times = times - times[0]
     sigma_f = _checks.deviation("sigma_f", sigma_f)
-    deviations = _checks.each_run("sigma_f", sigma_f, z.shape[-2:], ())
+    deviations = _checks.each_run("sigma_f", sigma_f, (samples, sensors), ())
     lower, upper = _box(box)
-    _checks.one_of("likelihood", likelihood, ("constant_velocity", "stationary"))
-    _checks.one_of("at", at, ("first", "last"))
-    _checks.one_of("loss", loss, ("least_squares", "bisquare"))
-    _checks.one_of("scale", scale, ("given", "estimated"))
-    robust = loss == "bisquare"
-    if robust:
+    robust, estimated = loss == "bisquare", scale == "estimated"
+    if robust or covariance == "bootstrap":
         _checks.generator("rng", rng)
-    workers = (os.cpu_count() or 1) if workers is None else _checks.whole_number("workers", workers)
+    workers = (os.cpu_count() or 1) if workers is None else workers
 
-    batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
+    batch = z.shape[:-2]
     runs = int(np.prod(batch))
     moving = likelihood == "constant_velocity" and samples > 1
-    problem = array_problem(array, lower, upper, T, samples, moving, workers)
-    needed = problem.unknowns
-    values = samples * sensors if moving else sensors
+    if isinstance(array, RadarArray):
+        problem = array_problem(array, lower, upper, times, moving, workers)
+        values = samples * sensors if moving else sensors
+    else:
+        problem = links_problem(array.sampled(samples, T), lower, upper, times, moving)
+        values = samples * sensors
+    correlation = _correlation(correlation, samples, problem.epoch)
+    needed = problem.unknowns(np.ones(samples * sensors, bool))
     if values < needed:
         raise ValueError(
             f"z must hold at least as many values as there are unknowns, got {values} "
@@ -134,74 +166,95 @@ def ml_initialize(
             f"bisquare, got {samples * sensors} for {needed}"
         )
     z = np.ascontiguousarray(z).reshape(runs, samples, sensors)
-    there = ~np.isnan(z)
-    weights, scales = np.where(there, 1.0, np.nan), np.ones(runs)
-    if robust:
-        found, weights, scales = _each_robust(problem, z, deviations, scale == "estimated", rng)
-    else:
+    n = state_size(array)
+    weights, scales, own = np.where(np.isnan(z), np.nan, 1.0), np.ones(runs), None
+    plain = not robust and correlation is None and covariance == "information"
+    if plain and isinstance(array, RadarArray):
         found = problem.search(z, deviations)
+    else:
+        last = samples - 1 if at == "last" else 0
+        options = Options(robust, estimated, correlation, covariance, lags, resamples, last)
+        found, own, weights, scales = _each_run(problem, z, deviations, options, n, rng)
     x, information, cost, arrived, second_x, second_cost = found
 
-    at_bound = (lower < upper) & ((x <= lower) | (x >= upper))
     solved = ~np.isnan(cost)
-    degrees = np.sum(weights > 0, axis=(1, 2)) - needed
-    if scale == "estimated" and not robust:
-        scales = np.sqrt(np.where(degrees > 0, cost / degrees, np.nan))
-        cost, second_cost, information = (
-            value / (scales**2).reshape(-1, *[1] * (value.ndim - 1))
-            for value in (cost, second_cost, information)
-        )
-    if at == "last" and moving:
-        F = np.eye(6)
-        F[:3, 3:] = (samples - 1) * T * np.eye(3)
+    at_bound = (lower < upper) & ((x[:, :6] <= lower) | (x[:, :6] >= upper))
+    there = weights > 0
+    degrees = np.sum(there, axis=(1, 2)) - np.array([problem.unknowns(some) for some in there])
+    if estimated and not (robust and correlation is None):
+        factor = np.sqrt(np.where(degrees > 0, cost / degrees, np.nan))
+        scales, cost, second_cost = scales * factor, cost / factor**2, second_cost / factor**2
+        information = information / factor[:, None, None] ** 2
+    F = np.eye(n)
+    if at == "last":
+        F[:3, 3:6] = moving * times[-1] * np.eye(3)
+        if n > 6 and array.clock_model == "drift":
+            half = (n - 6) // 2
+            F[6 : 6 + half, 6 + half :] = times[-1] * np.eye(half)
+    if at == "last" and (moving or n > 6):
         back = np.linalg.inv(F)
         x, second_x = x @ F.T, second_x @ F.T
         information = back.T @ information @ back
-    P = np.full((runs, 6, 6), np.nan)
+    P = np.full((runs, n, n), np.nan)
     identifiable = np.zeros(runs, bool)
     _checks.estimates("z, array, sigma_f, T, box", information[solved])
-    P[solved], identifiable[solved] = inverse_information(information[solved], lower < upper)
+    free = np.append(lower < upper, np.ones(n - 6, bool))
+    P[solved], identifiable[solved] = inverse_information(information[solved], free)
+    if own is not None:
+        P[identifiable] = (F @ own @ F.T)[identifiable]
     fields = x, P, cost, at_bound, identifiable, arrived, second_x, second_cost, degrees
     each = (field.reshape((*batch, *field.shape[1:])) for field in (*fields, weights, scales))
     estimate = InitialEstimate(*each)
     return replace(estimate, converged=estimate.converged & estimate.plausible)
 
 
-def _each_robust(problem, z, deviations, estimate_scale, rng):
-    """Return the robust fits of all runs, their weights and scales; a run has its own draws."""
-    runs, n = len(z), len(problem.lower)
+def _each_run(problem, z, deviations, options, n, rng):
+    """Return the fits of all runs, their covariances, weights and scales."""
+    runs = len(z)
     found = Found(
         np.full((runs, n), np.nan), np.full((runs, n, n), np.nan), np.full(runs, np.nan),
         np.zeros(runs, bool), np.full((runs, n), np.nan), np.full(runs, np.nan),
     )  # fmt: skip
-    weights, scales = np.full(z.shape, np.nan), np.full(runs, np.nan)
-    for i, child in enumerate(rng.spawn(runs)):
-        if np.sum(~np.isnan(z[i])) <= 2 * problem.unknowns:
-            continue
-        fit = robust_fit(problem, z[i], deviations, estimate_scale, child)
+    weights = np.full(z.shape, np.nan)
+    own = None if options.covariance == "information" else np.full((runs, n, n), np.nan)
+    scales = np.full(runs, np.nan)
+    # A run has its own draws.
+    children = [None] * runs if rng is None else rng.spawn(runs)
+    for i, child in enumerate(children):
+        fit = fit_run(problem, z[i], deviations, options, child)
         if fit is None:
             continue
-        found.x[i], found.converged[i], w, scale, found.second_x[i], more = fit
-        weights[i], scales[i] = w, scale
-        h, J = (value[0] for value in problem.predict(found.x[[i]]))
-        kept = w > 0
-        r, J = (
-            (h - z[i])[kept] / (scale * deviations[kept]),
-            J[kept] / (scale * deviations[kept])[:, None],
-        )
-        found.cost[i], found.information[i] = r @ r, EFFICIENCY * J.T @ J
-        found.second_cost[i] = found.cost[i] + more
-    return found, weights, scales
+        found.x[i], found.information[i], found.cost[i] = fit.x, fit.information, fit.cost
+        found.converged[i], found.second_x[i] = fit.arrived, fit.second_x
+        found.second_cost[i], weights[i], scales[i] = fit.second_cost, fit.weights, fit.scale
+        if own is not None:
+            own[i] = fit.P
+    return found, own, weights, scales
+
+
+def _correlation(correlation, samples, epoch):
+    """Return the correlation as a function of the lag, as long as it is not zero, or None."""
+    if correlation is None:
+        return None
+    if epoch:
+        raise ValueError("correlation must be None for clocks that are others at each sample")
+    correlation = _checks.one_row("correlation", correlation)[:samples]
+    if correlation[0] != 1:
+        raise ValueError(f"correlation must begin with 1, at lag zero, got {correlation[0]}")
+    try:
+        white_roots(correlation, np.ones((samples, 1), bool))
+    except np.linalg.LinAlgError:
+        raise ValueError(
+            f"correlation must be that of some errors, a positive definite matrix of {samples} "
+            f"samples, got {correlation.tolist()}"
+        ) from None
+    return correlation
 
 
 def _box(box):
-    try:
-        lower, upper = box
-    except (TypeError, ValueError):
-        raise ValueError(f"box must be a pair (lower, upper), got {box!r}") from None
     bounds = [
         _checks.finite(f"the {name} bound of box", bound, (6,))
-        for name, bound in (("lower", lower), ("upper", upper))
+        for name, bound in zip(("lower", "upper"), box, strict=True)
     ]
     for bound in bounds:
         if bound.ndim != 1:

@@ -370,11 +370,11 @@ def test_a_box_around_a_sensor_is_searched():
     [
         ({"z": np.zeros((1, 5))}, r"z must have shape \(..., None|any, 6\)"),
         ({"z": np.full((1, 6), np.inf)}, "z must be finite, or NaN"),
-        ({"array": RING.positions}, "array must be a RadarArray"),
+        ({"array": RING.positions}, "array must be a RadarArray or a DopplerLinks"),
         ({"sigma_f": 0}, "sigma_f must be positive"),
         ({"sigma_f": [1, 2]}, "sigma_f must have leading axes that broadcast"),
         ({"T": -1}, "T must be positive"),
-        ({"box": SPACE[0]}, "box must be a pair"),
+        ({"box": SPACE[0]}, "box must have 2 parts, got 6"),
         ({"box": (SPACE[0], SPACE[1][:3])}, r"upper bound of box must have shape \(..., 6\)"),
         ({"box": SPACE * np.inf}, "lower bound of box must be finite"),
         ({"box": SPACE[::-1]}, "box must not be empty, got lower 1.5 above upper 0.1 at index 0"),

@@ -1,0 +1,108 @@
+"""The fit of one run with a loss, correlated errors, clocks, and a covariance of one's choice."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ._ml_covariance import bootstrap, information, sandwich, slopes
+from ._ml_polish import Refined, least_squares, refine
+from ._ml_robust import TIE, robust_fit
+
+
+class Options(NamedTuple):
+    """Arguments of `ml_initialize`; `sample` is that of the offsets of an "epoch" clock."""
+
+    robust: bool
+    estimate_scale: bool
+    correlation: np.ndarray | None
+    covariance: str
+    lags: int | None
+    resamples: int
+    sample: int
+
+
+class Fit(NamedTuple):
+    """Results of one run, with n = 6 + C components and N measurements a sample."""
+
+    x: np.ndarray
+    information: np.ndarray
+    P: np.ndarray | None
+    cost: float
+    arrived: bool
+    second_x: np.ndarray
+    second_cost: float
+    weights: np.ndarray
+    scale: float
+
+
+def fit_run(problem, z, deviations, options, rng):
+    """Return the `Fit` of one run (K, N), or None if it is too incomplete."""
+    box, robust, there = (problem.lower, problem.upper), options.robust, ~np.isnan(z)
+    needed = problem.unknowns(there)
+    if np.sum(there) < needed or (robust and np.sum(there) <= 2 * needed):
+        return None
+    if robust:
+        fit = robust_fit(problem, z, deviations, options.estimate_scale, rng)
+        if fit is None:
+            return None
+        found, second, weights, scale = fit
+        data = problem.data(z, scale * deviations)
+    else:
+        begun = problem.search(z[None], deviations)
+        x = np.concatenate([begun.x, begun.second_x])
+        x = x[np.isfinite(x).all(axis=1)]
+        if not len(x):
+            return None
+        data, weights, scale = problem.data(z, deviations), np.where(there, 1.0, 0.0), 1.0
+        found, second = _best(refine(data, x, box))
+    kept = weights > 0
+    if options.correlation is not None:
+        # Errors of wrong windows belong to no law: those windows are missing, all others count.
+        weights, robust = np.where(kept, 1.0, 0.0), False
+        roots = white_roots(options.correlation, kept)
+        data = problem.data(np.where(kept, z, np.nan), scale * deviations, roots)
+        x = np.concatenate([found.x, second.x])
+        clocks = np.concatenate([found.clocks, second.clocks])
+        found, second = _best(refine(data, x, box, least_squares, None, clocks))
+    kept = kept.ravel()
+    group = options.sample if problem.epoch else 0
+    r, A = slopes(data, found, kept, group)
+    cost, P = np.sum(r[kept] ** 2), None
+    free = np.append(box[0] < box[1], np.ones(A.shape[1] - 6, bool))
+    if options.covariance == "sandwich":
+        P = sandwich(r, A, kept, robust, len(z), options.lags, free)
+    elif options.covariance == "bootstrap":
+        P = bootstrap(
+            data, found, box, robust, kept, options.lags, options.resamples, group, rng
+        )  # fmt: skip
+    second_x, second_cost = np.full(A.shape[1], np.nan), np.nan
+    if len(second.x):
+        second_x = np.append(second.x[0], second.clocks[0, group])
+        second_cost = cost + second.cost[0] - found.cost[0]
+    return Fit(
+        np.append(found.x[0], found.clocks[0, group]), information(A, kept, robust), P, cost,
+        found.arrived[0], second_x, second_cost, np.where(there, weights, np.nan), scale,
+    )  # fmt: skip
+
+
+def white_roots(correlation, there):
+    """Return matrices (N, K, K) that make the errors of each sensor white in time.
+
+    `correlation` is a function of the lag in samples, zero beyond; what is not `there` (K, N) is
+    left out. With the correlations C = L L' they are L^-1.
+    """
+    samples, sensors = there.shape
+    lag = np.abs(np.subtract.outer(np.arange(samples), np.arange(samples)))
+    C = np.where(lag < len(correlation), correlation[np.minimum(lag, len(correlation) - 1)], 0.0)
+    roots = np.zeros((sensors, samples, samples))
+    for root, some in zip(roots, there.T, strict=True):
+        rows = np.flatnonzero(some)
+        L = np.linalg.cholesky(C[np.ix_(rows, rows)])
+        root[np.ix_(rows, rows)] = np.linalg.inv(L)
+    return roots
+
+
+def _best(found: Refined):
+    """Return the best fit, the first of equal ones, and the second-best if there is one."""
+    first = 0 if found.cost[0] <= found.cost.min() * (1 + TIE) + TIE else np.argmin(found.cost)
+    return found.of([first]), found.of(np.arange(len(found.cost)) != first)
