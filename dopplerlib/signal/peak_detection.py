@@ -97,8 +97,11 @@ def detect_peaks(
 
     With `noise`, powers are first divided by it, so that noise which is steady and colored becomes
     white, and a steady line as high as its surroundings. Then a bin must pass twice: over the
-    reference cells, in case the noise has grown, and over the measured noise itself, where a
-    target of many bins raises the reference cells.
+    measured noise, and over the reference cells, in case the noise has grown. The echo of a wide
+    body raises these, and is missed where it is wider than `extent`.
+
+    The window should be as long as the frequency lets it: see `optimal_window_detection` for the
+    largest chirp that is to be seen. For measurements on a steady stretch it may be longer.
 
     A tone is the highest bin of its main lobe, above the side lobes of stronger ones by 6 dB. Its
     frequency is that of the highest point of the weighted periodogram within a bin.

@@ -11,6 +11,7 @@ from .._typing import ArrayLike, FloatArray
 from ._tapers import curvature_gain, error_correlation, weights
 
 _THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
+_WIDE = 2  # window lengths between the frequencies of a difference
 _SPAN = 8  # windows side by side over which the scatter is averaged
 _OUTLYING = 3.0  # robust deviations from where on a difference counts as one that far off
 _MOST = 2**24
@@ -71,8 +72,9 @@ def frequency_scatter(
     Notes
     -----
     What scatters are third differences ``f[k + 3 L] - 3 f[k + 2 L] + 3 f[k + L] - f[k]`` of
-    windows that do not overlap, L hops apart. They have 20 times the variance of a frequency, and
-    no curve that is a parabola across three windows shows in them. Their mean square is taken about
+    windows two lengths apart, L hops: far enough for an error that is alike in neighbors, near
+    enough for a curve that bends. They have 20 times the variance of a frequency, and no curve that
+    is a parabola across seven windows shows in them. Their mean square is taken about
     each window, where squares beyond three robust deviations count as nine, with the factor that
     makes up for it in Gaussian scatter.
 
@@ -82,21 +84,21 @@ def frequency_scatter(
 
     Examples
     --------
-    Scatter of 3 Hz on a curve; half of each window overlaps:
+    Noise on a curve, as windows have it of which each half overlaps, and its own deviation:
 
     >>> rng = np.random.default_rng(1)
     >>> noise = np.convolve(rng.standard_normal(401), [1, 1], "valid") * 3 / 2**0.5
     >>> f = 100 + 0.01 * np.arange(400) ** 2 + noise
     >>> std = frequency_scatter(f, window=256, hop=128)
-    >>> round(float(np.median(std)))
-    3
+    >>> round(float(np.sqrt(np.mean(std**2))), 1), round(float(noise.std()), 1)
+    (2.3, 2.5)
     """
     f = _checks.measured("frequency", frequency, (None,))
     if (np.abs(f) > 1e60).any():
         raise ValueError(f"frequency must not exceed 1e60, got {np.nanmax(np.abs(f)):g}")
     lag = _lag(window, hop)
     rows = f.reshape(-1, f.shape[-1])
-    std = np.array([_scatter(row, lag, span * lag) for row in rows]).reshape(f.shape)
+    std = np.array([_scatter(row, _WIDE * lag, span * lag) for row in rows]).reshape(f.shape)
     bias = np.zeros(f.shape)
     if f.shape[-1] > 2 * lag:
         second = f[..., 2 * lag :] - 2 * f[..., lag:-lag] + f[..., : -2 * lag]
@@ -196,7 +198,7 @@ def _scatter(f, lag, count):
     """Return the standard deviations (K,) by the nearest `count` differences of each."""
     d = _differences(f, lag)
     center = np.flatnonzero(~np.isnan(d))
-    if len(center) < lag:
+    if len(center) < lag // _WIDE:
         return np.full(len(f), np.nan)
     square = d[center] ** 2 / np.sum(_THIRD**2)
     count = min(count, len(center))

@@ -16,6 +16,7 @@ from dopplerlib.signal.laws import (
     crlb_frequency_std_dc,
     integrated_snr_for_std,
     optimal_window_center,
+    optimal_window_detection,
     optimal_window_end,
     outlier_probability,
     overlap_correlation,
@@ -185,3 +186,15 @@ def test_what_makes_no_sense_is_refused_by_name():
     ]:
         with pytest.raises(ValueError, match=message):
             call()
+
+
+@pytest.mark.parametrize(("taper", "chirp"), [("rectangular", 800.0), ("hann", -3000.0)])
+def test_the_best_window_for_a_chirp_has_the_highest_peak_over_the_noise(taper, chirp):
+    def ratio(T):
+        t = np.linspace(-T / 2, T / 2, 4001)
+        w = np.ones(len(t)) if taper == "rectangular" else np.cos(np.pi * t / T) ** 2
+        tone = np.trapezoid(w * np.exp(1j * np.pi * chirp * t**2), t)
+        return -(np.abs(tone) ** 2) / np.trapezoid(w**2, t)
+
+    best = minimize_scalar(ratio, bounds=(0.01, 0.1), method="bounded", options={"xatol": 1e-9}).x
+    assert float(optimal_window_detection(chirp, taper)) == pytest.approx(best, rel=1e-4)
