@@ -275,6 +275,7 @@ MEANT = (
     "ml_initialize",
     "ekf",
     "gate_bounds",
+    "gaussian_sum",
 )  # NaN and infinity mean something there
 HUGE = [1e155, 1e200, 1e308]
 

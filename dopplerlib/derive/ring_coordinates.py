@@ -305,9 +305,23 @@ def moved_block():
     )
 
 
+def pushed_block():
+    """Return the program of the change of the coordinates along a change of the state."""
+    change = sp.symbols([f"c_{component.name}" for component in STATE], real=True)
+    new = sp.symbols([f"c_{axis}" for axis in AXES], real=True)
+    along = [sp.factor_terms(entry) for entry in jacobian() @ sp.Matrix(change)]
+    return Block(
+        name="pushed",
+        summary="Change of eta, beta, b and ln rho along a small change of the state.",
+        inputs=(*STATE, RANGE, *change),
+        stages=(Stage("derivative along the change", list(zip(new, along, strict=True))),),
+        outputs=tuple(new),
+    )
+
+
 def blocks():
     """Return the programs that are printed into `dopplerlib.kernels.ring_coordinates`."""
-    return shift_block(), to_coordinates_block(), to_state_block(), moved_block()
+    return shift_block(), to_coordinates_block(), to_state_block(), moved_block(), pushed_block()
 
 
 def _entries(prefix, rows, matrix):

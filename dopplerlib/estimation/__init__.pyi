@@ -5,6 +5,7 @@ from . import densities as densities
 from . import extended_kalman as extended_kalman
 from . import extended_update as extended_update
 from . import gaussian as gaussian
+from . import gaussian_sum as gaussian_sum
 from . import imm as imm
 from . import imm_records as imm_records
 from . import initial_estimate as initial_estimate

@@ -171,3 +171,28 @@ def moved(eta_y, eta_z, beta_y, beta_z, b, u, V, V_etay, V_etaz, V_betay,
             f_betaz_betay, f_betaz_betaz, f_betaz_b, f_betaz_ell, f_b_etay,
             f_b_etaz, f_b_betay, f_b_betaz, f_b_b, f_b_ell, f_ell_etay, f_ell_etaz,
             f_ell_betay, f_ell_betaz, f_ell_b, f_ell_ell)
+
+
+def pushed(x, y, z, v_x, v_y, v_z, rho, c_x, c_y, c_z, c_v_x, c_v_y, c_v_z):
+    """Change of eta, beta, b and ln rho along a small change of the state."""
+    # derivative along the change
+    t0 = 1/(rho*rho)
+    t1 = c_x*x
+    t2 = 2*t0
+    t3 = t2*y
+    t4 = c_z*z
+    c_etay = t0*(c_y*(-t2*(y*y) + 1) - t1*t3 - t3*t4)
+    t5 = t2*z
+    t6 = c_y*y
+    c_etaz = t0*(c_z*(-t2*(z*z) + 1) - t1*t5 - t5*t6)
+    t7 = 1/rho
+    t8 = t0*v_y
+    t9 = v_y*y
+    c_betay = t7*(c_v_y - c_y*t0*t9 - t1*t8 - t4*t8)
+    t10 = t0*v_z
+    t11 = v_z*z
+    c_betaz = t7*(c_v_z - c_z*t0*t11 - t1*t10 - t10*t6)
+    t12 = t0*(t11 + t9 + v_x*x)
+    c_b = t7*(c_v_x*x + c_v_y*y + c_v_z*z + c_x*(-t12*x + v_x) + c_y*(-t12*y + v_y) + c_z*(-t12*z + v_z))
+    c_ell = t0*(t1 + t4 + t6)
+    return c_etay, c_etaz, c_betay, c_betaz, c_b, c_ell

@@ -1,0 +1,123 @@
+"""Fewer members of a Gaussian sum, compiled: light ones go, alike ones are united."""
+
+import numpy as np
+
+from ._ring_member import LOST, compiled, factor, put, put_square
+
+
+@compiled
+def drop(x, P, weight, count, least):
+    """Bring the weights to a sum of one, without those below `least`; return the number left."""
+    top = LOST
+    for m in range(count):
+        top = max(top, weight[m])
+    if top == LOST:
+        return 0
+    total = 0.0
+    for m in range(count):
+        total += np.exp(weight[m] - top)
+    total = top + np.log(total)
+    limit, kept = np.log(least), 0
+    for m in range(count):
+        if weight[m] - total >= limit:
+            put(x[kept], x[m])
+            put_square(P[kept], P[m])
+            weight[kept] = weight[m]
+            kept += 1
+    total = 0.0
+    for m in range(kept):
+        total += np.exp(weight[m] - top)
+    for m in range(kept):
+        weight[m] -= top + np.log(total)
+    return kept
+
+
+@compiled
+def merge(x, P, weight, count, loss):
+    """Unite members that are alike; return the number left.
+
+    From the lightest on, each is united with the one that is nearest, if Runnalls' (2007) bound on
+    the Kullback-Leibler cost of it is below `loss`.
+    """
+    L, d, both = np.zeros((6, 6)), np.empty(6), np.zeros((6, 6))
+    logs, y, v = np.empty(count), np.empty((count, 6)), np.empty((count, 6))
+    # Nearness is that along the axes of the members' mean covariance, whitened.
+    alive = np.empty(count)
+    for m in range(count):
+        alive[m] = np.exp(weight[m])
+        for a in range(6):
+            for b in range(6):
+                both[a, b] += alive[m] * P[m, a, b]
+    whitener = np.zeros((6, 6))
+    factor(both, whitener)
+    for m in range(count):
+        logs[m] = factor(P[m], L)
+        _whitened(x[m], P[m], whitener, both, y[m], v[m])
+    for _ in range(count):
+        i = 0
+        for m in range(count):
+            if weight[m] < weight[i]:
+                i = m
+        weight[i] = np.inf  # has had its turn
+        nearest, least = -1, np.inf
+        for j in range(count):
+            if j != i and alive[j] > 0.0:
+                share = alive[j] / (alive[i] + alive[j])
+                distance = 0.0
+                for a in range(6):
+                    apart = y[j, a] - y[i, a]
+                    distance += apart * apart / (v[i, a] + share * (v[j, a] - v[i, a]))
+                distance *= share
+                if distance < least:
+                    nearest, least = j, distance
+        if nearest < 0:
+            break
+        j = nearest
+        share = alive[i] / (alive[i] + alive[j])
+        for a in range(6):
+            d[a] = x[j, a] - x[i, a]
+        for a in range(6):
+            for b in range(6):
+                both[a, b] = P[j, a, b] + share * (P[i, a, b] - P[j, a, b])
+                both[a, b] += share * (1 - share) * d[a] * d[b]
+        log = factor(both, L)
+        cost = 0.5 * ((alive[i] + alive[j]) * log - alive[i] * logs[i] - alive[j] * logs[j])
+        if cost < loss:
+            for a in range(6):
+                x[j, a] -= share * d[a]
+            put_square(P[j], both)
+            alive[j] += alive[i]
+            alive[i] = 0.0
+            logs[j] = log
+            _whitened(x[j], P[j], whitener, both, y[j], v[j])
+    kept = 0
+    for m in range(count):
+        if alive[m] > 0.0:
+            put(x[kept], x[m])
+            put_square(P[kept], P[m])
+            weight[kept] = np.log(alive[m])
+            kept += 1
+    return kept
+
+
+@compiled
+def _whitened(x, P, L, spare, y, v):
+    """Write inv(L) x to `y`, and the diagonal of inv(L) P inv(L)' to `v`."""
+    for i in range(6):
+        y[i] = x[i]
+        for k in range(i):
+            y[i] -= L[i, k] * y[k]
+        y[i] /= L[i, i]
+        for j in range(6):
+            s = P[i, j]
+            for k in range(i):
+                s -= L[i, k] * spare[k, j]
+            spare[i, j] = s / L[i, i]
+    # The rows of inv(L) P are there; the same from the right, as far as the diagonal.
+    for i in range(6):
+        for j in range(i + 1):
+            s = spare[i, j]
+            for k in range(j):
+                s -= L[j, k] * spare[i, k]
+            spare[i, j] = s / L[j, j]
+        v[i] = spare[i, i]

@@ -1,0 +1,120 @@
+"""The Gaussian sum filter beside other estimators, and its own claims over many runs."""
+
+import numpy as np
+import pytest
+
+from dopplerlib import RadarArray, constant_velocity, doppler_jacobian, doppler_shift, ekf
+from dopplerlib.estimation.gaussian_sum import gaussian_sum
+
+ARRAY = RadarArray.ring(6, 0.2)
+X0 = np.array([0.8, 0.0, 0.0, -0.75, 0.0, 0.0])
+P0 = np.diag([0.2, 0.25, 0.25, 0.25, 0.25, 0.25]) ** 2
+T = 1e-3
+
+
+def records(runs, samples, rng, sigma_a=0.4, sigma_f=0.4, x0=X0, P0=P0, array=ARRAY, least=0.3):
+    """Return true paths from the prior, in front of the array, and their measurements."""
+    F, Q = constant_velocity(T, sigma_a, "per_axis")
+    root = np.linalg.cholesky(Q + 1e-18 * np.eye(6))
+    x = x0 + rng.standard_normal((40 * runs, 6)) @ np.linalg.cholesky(P0).T
+    x = x[x[:, 0] + np.minimum(x[:, 3], 0) * samples * T > least][:runs]
+    path = np.empty((runs, samples, 6))
+    for k in range(samples):
+        x = x @ F.T + rng.standard_normal((runs, 6)) @ root.T
+        path[:, k] = x
+    shifts = doppler_shift(path, array)
+    return path, shifts + sigma_f * rng.standard_normal(shifts.shape)
+
+
+def test_from_a_narrow_prior_it_is_the_extended_filter():
+    x0 = np.array([0.8, 0.1, 0.1, -0.7, 0.05, 0.0])
+    P0 = np.diag([2e-3, 2e-3, 2e-3, 5e-3, 5e-3, 5e-3]) ** 2
+    _, z = records(1, 60, np.random.default_rng(1), x0=x0, P0=P0)
+    found = gaussian_sum(z[0], ARRAY, x0, P0, T, 0.4, 0.4, block=1)
+    other = ekf(z[0], ARRAY, x0, P0, T, 0.4, 0.4, noise="per_axis")
+    deviation = np.sqrt(np.diagonal(other.P, axis1=-2, axis2=-1))
+    assert (found.members == 1).all()
+    # Curvature over two millimeters is all that the two treat differently.
+    assert np.abs((found.x - other.x) / deviation).max() < 0.03
+    np.testing.assert_allclose(found.P, other.P, rtol=0.03, atol=1e-7)
+
+
+def test_the_start_is_the_posterior_that_sampling_finds():
+    # In five microseconds nothing moves: one scan, in which the shifts are linear in the velocity.
+    rng = np.random.default_rng(2)
+    truth = np.array([0.9, -0.2, 0.3, -0.6, 0.2, 0.1])
+    z = doppler_shift(truth, ARRAY) + 0.4 * rng.standard_normal((5, 6))
+    found = gaussian_sum(z, ARRAY, X0, P0, 1e-6, 0.1, 0.4, every=5)
+    p = X0[:3] + rng.standard_normal((120_000, 3)) @ np.sqrt(P0[:3, :3])
+    p = p[p[:, 0] > 0.05]
+    H = doppler_jacobian(np.concatenate([p, np.zeros_like(p)], axis=-1), ARRAY)[..., 3:]
+    V, r = P0[3:, 3:], 0.4**2 / 5
+    S = H @ V @ H.swapaxes(-1, -2) + r * np.eye(6)
+    innovation = z.mean(axis=0) - H @ X0[3:]
+    solved = np.linalg.solve(S, innovation[..., None])[..., 0]
+    log = -0.5 * np.sum(innovation * solved, axis=-1) - 0.5 * np.linalg.slogdet(S)[1]
+    w = np.exp(log - log.max())
+    w /= w.sum()
+    effective = 1 / np.sum(w**2)
+    assert effective > 1500
+    x = np.concatenate([p, X0[3:] + np.einsum("ij,rnj,rn->ri", V, H, solved)], axis=-1)
+    mean = w @ x
+    P = (x - mean).T @ ((x - mean) * w[:, None])
+    given = V - V @ H.swapaxes(-1, -2) @ np.linalg.solve(S, H @ V)  # of a velocity, given p
+    P[3:, 3:] += np.einsum("r,rij->ij", w, given)
+    deviation = np.sqrt(np.diagonal(P))
+    # Four standard errors of the sampling, and what windows of this size leave.
+    assert np.abs((found.x[0] - mean) / deviation).max() < 4 / np.sqrt(effective) + 0.05
+    np.testing.assert_allclose(np.sqrt(np.diagonal(found.P[0])), deviation, rtol=0.07)
+
+
+def test_its_covariance_is_that_of_its_errors():
+    path, z = records(150, 200, np.random.default_rng(3))
+    found = gaussian_sum(z, ARRAY, X0, P0, T, 0.4, 0.4, every=100)
+    error = found.x - path[:, 99::100]
+    nees = np.einsum("roi,roi->ro", error, np.linalg.solve(found.P, error[..., None])[..., 0])
+    standard_error = nees.std(axis=0) / np.sqrt(len(nees))
+    # False alarm: 1e-4 for two means, taken as normal.
+    assert (np.abs(nees.mean(axis=0) - 6) < 4 * standard_error).all()
+    assert standard_error.max() < 0.8
+
+
+def test_another_frame_gives_the_same():
+    # A ring whose plane is z = 0, elsewhere, with the target below.
+    _, z = records(3, 100, np.random.default_rng(4))
+    expected = gaussian_sum(z, ARRAY, X0, P0, T, 0.4, 0.4, every=50)
+    turn = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]])
+    array = RadarArray(ARRAY.positions @ turn.T + [1.0, 2.0, 3.0])
+    both = np.kron(np.eye(2), turn)
+    found = gaussian_sum(
+        z, array, both @ X0 + [1, 2, 3, 0, 0, 0], both @ P0 @ both.T, T, 0.4, 0.4, every=50
+    )
+    moved = expected.x @ both.T + [1, 2, 3, 0, 0, 0]
+    deviation = np.sqrt(np.diagonal(found.P, axis1=-2, axis2=-1))
+    # The windows of the start may lie turned; the sum of Gaussians is good to that.
+    assert np.abs((found.x - moved) / deviation).max() < 0.1
+
+
+def test_sensors_may_be_missing_and_workers_change_nothing():
+    _, z = records(4, 60, np.random.default_rng(5))
+    z[:, 7:23, 1] = np.nan
+    z[:, 30:41] = np.nan
+    z[0, :5] = np.nan
+    one = gaussian_sum(z, ARRAY, X0, P0, T, 0.4, 0.4, every=20, workers=1)
+    two = gaussian_sum(z, ARRAY, X0, P0, T, 0.4, 0.4, every=20, workers=2)
+    for name in ("x", "P", "members"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
+    assert np.isfinite(one.x).all()
+
+
+@pytest.mark.parametrize(
+    ("array", "x0", "message"),
+    [
+        (RadarArray.linear(5, 0.4), X0, "array must have its sensors in one plane"),
+        (RadarArray([[0, 0.1, 0], [0, 0, 0.1], [0.1, 0, 0], [0, 0, 0]]), X0, "array must have its"),
+        (ARRAY, [0, 0.5, 0, 0, 0, 0], "x0 must lie in front of the plane"),
+    ],
+)
+def test_what_it_cannot_track_is_refused(array, x0, message):
+    with pytest.raises(ValueError, match=message):
+        gaussian_sum(np.zeros((5, len(array))), array, x0, P0, T, 0.4, 0.4)
