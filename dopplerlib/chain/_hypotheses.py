@@ -63,10 +63,11 @@ def hypotheses(z, std, array, T, apart, boxes):
     return np.stack(states, axis=1), np.stack(costs, axis=1) / variance[:, None], weights
 
 
-def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs):
+def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs, noise="shared"):
     """Return x, P, innovation, S, nis, memory and score of the filters of one run.
 
     `free` (6,) says which components of the state are unknown at the start.
+    `noise` is that of `constant_velocity`.
     """
     shape = (len(states), 1 + len(z) - used)
     x, P = np.full((*shape, 6), np.nan), np.full((*shape, 6, 6), np.nan)
@@ -83,7 +84,9 @@ def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs
         if shape[1] > 1:
             # The filter wants a number for what is missing, and does not use it.
             sigma = np.where(np.isinf(std[used:]), 1.0, std[used:])
-            t = ekf(z[used:], array, states[i], covariance, T, sigma_a, sigma, workers=1)
+            t = ekf(
+                z[used:], array, states[i], covariance, T, sigma_a, sigma, noise=noise, workers=1
+            )
             x[i, 1:], P[i, 1:], nis[i] = t.x, t.P, t.nis
             innovation[i], S[i] = t.innovation, t.S
             factors[i] = _factor(t.S, np.isnan(t.innovation))

@@ -5,9 +5,12 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from .._hints import Count, Runs, between, checked
+from .._hints import AboveZero, Count, Runs, between, checked, exactly
+from .._typing import FloatArray
+from ..model.radar_array import RadarArray
 from ..model.scenario import Scenario
 from ..signal.impairments import add_dc, add_iq_imbalance
+from ..signal.recording import Recording
 from ..signal.synthesis import iq_from_geometry
 from .baseband import Baseband
 
@@ -91,3 +94,54 @@ def simulate_baseband(
             x = add_iq_imbalance(x, MODULE_FAULTS["gain_db"], MODULE_FAULTS["phase_deg"])
         records.append(Baseband.from_samples(x, fs, s.array, factor=factor))
     return replace(records[0], x=np.stack([one.x for one in records]))
+
+
+@checked
+def simulate_recording(
+    path: Annotated[FloatArray, exactly(None, 3)],
+    array: RadarArray,
+    fs: AboveZero,
+    *,
+    rng: np.random.Generator,
+    snr_db: Annotated[float, between(-200, 200)] = 24.0,
+    scale: AboveZero = 0.3,
+) -> Recording:
+    """Simulate a recording that cheap modules make of a target on a path.
+
+    Parameters
+    ----------
+    path : array_like, shape (n, 3)
+        Position of the target in m at each sample.
+    array : RadarArray
+        The N sensors.
+    fs : float
+        Sampling rate in Hz.
+    rng : numpy.random.Generator
+        Source of start phases and noise.
+    snr_db : float
+        Power of an echo over the variance of a complex sample, in dB.
+    scale : float
+        Amplitude of an echo in the recording, in which 1 is full scale.
+
+    Returns
+    -------
+    Recording
+        With the constant and the unequal branches of `MODULE_FAULTS`.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray
+    >>> path = [2, 1, 0] + np.arange(100)[:, None] / 1e3 * [-1, 0, 0]
+    >>> recording = simulate_recording(
+    ...     path, RadarArray([[0, 0, 0], [0, 1, 0]]), 1e3, rng=np.random.default_rng(1)
+    ... )
+    >>> recording.x.shape, round(recording.carrier / 1e9, 2)
+    ((2, 100), 23.98)
+    """
+    from scipy.constants import speed_of_light
+
+    x = iq_from_geometry(path, array, snr_db, rng=rng)
+    x = add_iq_imbalance(
+        add_dc(x, MODULE_FAULTS["dc"]), MODULE_FAULTS["gain_db"], MODULE_FAULTS["phase_deg"]
+    )
+    return Recording(scale * x, fs, speed_of_light / array.wavelength)

@@ -17,6 +17,7 @@ from ..signal.frequency import ml_frequency
 from ..signal.impairments import correct_iq_imbalance, remove_mean
 from ..signal.lines import near_lines, remove_lines
 from ..signal.sliding import sliding_doppler
+from ._box import bounds
 from ._hypotheses import filters, hypotheses, parts
 from .baseband import Baseband
 
@@ -60,6 +61,8 @@ class IqTrack:
         Degrees of freedom of this chi-square: shifts that are there less unknowns.
     velocity_random_walk : float
         Standard deviation in m/s of the random walk of each velocity in a second, see `track_iq`.
+    noise : {"shared", "per_axis", "horizontal"}
+        Which velocities wander, see `track_iq`.
 
     Raises
     ------
@@ -93,6 +96,7 @@ class IqTrack:
     score: np.ndarray
     degrees: np.ndarray
     velocity_random_walk: float
+    noise: str = "shared"
 
     def __post_init__(self):
         """Check the fields."""
@@ -116,6 +120,7 @@ class IqTrack:
                 _checks.measured(name, values, ())
             fields[name] = values
         walk = _checks.moderate_number("velocity_random_walk", self.velocity_random_walk)
+        _checks.one_of("noise", self.noise, ("shared", "per_axis", "horizontal"))
         return {**fields, "velocity_random_walk": walk}
 
     @property
@@ -147,6 +152,21 @@ class IqTrack:
         fields = self.x[..., 1:, :], self.P[..., 1:, :, :], self.innovation, self.S, self.nis
         x, P, innovation, S, nis = (_of_each(field, best) for field in fields)
         return Track(x, P, innovation, S, nis, np.isfinite(innovation).any(axis=-1))
+
+    @property
+    @_checks.quiet
+    def live(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """States as they were known, sample by sample: of the hypothesis that led by then.
+
+        Times on the clock (1 + K - used,) from which they are known, and states (..., 1 + K - used,
+        6) and covariances predicted to these times. NaN if there was no start.
+        """
+        known = self.available_at[self.used - 1 :]
+        best = np.argmin(self.score, axis=-2)[..., None, :, None]
+        x = np.take_along_axis(self.x, best, axis=-3).squeeze(axis=-3)
+        P = np.take_along_axis(self.P, best[..., None], axis=-4).squeeze(axis=-4)
+        ahead = known[0] - self.time[self.used - 1]
+        return known, *self._ahead(x, P, ahead)
 
     @checked
     def samples_at(self, time: Real) -> int:
@@ -204,30 +224,21 @@ class IqTrack:
         chosen = np.argmin(self.score[..., k if carry else 0], axis=-1)
         x, P = _of_each(self.x[..., k, :], chosen), _of_each(self.P[..., k, :, :], chosen)
         ahead = time - self.time[self.used + k - 1]
-        if ahead > 1e-9:
-            F, Q = constant_velocity(ahead, self.velocity_random_walk / np.sqrt(ahead))
-            x, P = x @ F.T, F @ P @ F.T + Q
-        return x, P, chosen
+        return *self._ahead(x, P, ahead), chosen
 
-
-def _bounds(name, box):
-    """Return the lower and upper bounds of a position or a state, or raise."""
-    bounds = tuple(_checks.iterable(name, box, "a pair (lower, upper)"))
-    if len(bounds) != 2:
-        raise ValueError(f"{name} must be a pair (lower, upper), got {len(bounds)} bounds")
-    lower, upper = (_checks.moderate(name, bound) for bound in bounds)
-    if lower.shape != upper.shape or lower.shape not in ((3,), (6,)):
-        got = f"{lower.shape}, {upper.shape}"
-        raise ValueError(f"{name} must be a pair of arrays of shape (3,) or (6,), got {got}")
-    if (lower > upper).any():
-        raise ValueError(f"{name} must not be empty, got {lower.tolist()} to {upper.tolist()}")
-    return lower, upper
+    def _ahead(self, x, P, seconds):
+        """Return states and covariances predicted by some seconds, if it is any time at all."""
+        if seconds <= 1e-9:
+            return x, P
+        sigma_a = self.velocity_random_walk / np.sqrt(seconds)
+        F, Q = constant_velocity(seconds, sigma_a, self.noise)
+        return x @ F.T, F @ P @ F.T + Q
 
 
 @checked
 def track_iq(
     iq: Baseband,
-    box: Annotated[tuple[ArrayLike, ArrayLike], _bounds],
+    box: Annotated[tuple[ArrayLike, ArrayLike], bounds],
     *,
     speed_limit: Positive,
     velocity_random_walk: Positive,
@@ -243,6 +254,7 @@ def track_iq(
     variance_inflation: Positive = 1.0,
     least_snr: Positive = 20.0,
     search: Literal["parts", "whole"] = "parts",
+    noise: Literal["shared", "per_axis", "horizontal"] = "shared",
 ) -> IqTrack:
     """Detect and track a target in the IQ samples of an array.
 
@@ -291,6 +303,10 @@ def track_iq(
         the box between the planes through the middle of the array. "whole": the likeliest and the
         second one that `ml_initialize` finds in the whole box; so it is also if there is one part
         only.
+    noise : {"shared", "per_axis", "horizontal"}
+        Whether the velocities wander together, as in the paper's Eq 17, each by itself, as those of
+        a target do that may turn, or those along x and y only, as those of a target do whose height
+        stays: see `constant_velocity`.
 
     Returns
     -------
@@ -387,7 +403,7 @@ def track_iq(
     fixed = iq.array, T, used, apart, velocity_random_walk / np.sqrt(T), free
     try:
         each = [
-            filters(z, s, early, *fixed, *starts)
+            filters(z, s, early, *fixed, *starts, noise=noise)
             for z, s, early, *starts in zip(z, std, weights, states, costs, strict=True)
         ]
     except np.linalg.LinAlgError:
@@ -398,7 +414,14 @@ def track_iq(
     fields = z, std, *map(np.array, zip(*each, strict=True)), degrees
     z, std, *rest = (field.reshape((*leading, *field.shape[1:])) for field in fields)
     return IqTrack(
-        time, available_at, z, std, used, *rest, velocity_random_walk=velocity_random_walk
+        time,
+        available_at,
+        z,
+        std,
+        used,
+        *rest,
+        velocity_random_walk=velocity_random_walk,
+        noise=noise,
     )
 
 

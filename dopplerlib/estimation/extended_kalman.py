@@ -30,7 +30,7 @@ def ekf(
     T: ArrayLike,
     sigma_a: float,
     sigma_f: ArrayLike,
-    noise: Literal["shared", "per_axis"] = "shared",
+    noise: Literal["shared", "per_axis", "horizontal"] = "shared",
     gate: Literal["upper", "two-sided", "soft"] | None = None,
     *,
     gate_probability: float = 0.95,
@@ -64,7 +64,7 @@ def ekf(
     sigma_f : array_like, broadcast to (K, N)
         Standard deviation of the measurements in Hz: one number, one for each sensor, or one for
         each sample and sensor.
-    noise : {"shared", "per_axis"}
+    noise : {"shared", "per_axis", "horizontal"}
         Process noise, see `constant_velocity`.
     gate : {None, "upper", "two-sided", "soft"}
         Which measurements are used. None: all. "upper": those whose NIS is below the chi-square

@@ -315,7 +315,7 @@ class DopplerLinks:
         self,
         T: ArrayLike,
         sigma_a: float,
-        noise: Literal["shared", "per_axis"] = "shared",
+        noise: Literal["shared", "per_axis", "horizontal"] = "shared",
         sigma_clock: _Deviation = 0.0,
         sigma_drift: _Deviation = 0.0,
     ) -> tuple[FloatArray, FloatArray]:

@@ -14,13 +14,13 @@ from .._hints import checked
 from .._typing import ArrayLike, FloatArray
 
 # The axes that each acceleration drives.
-_AXES = {"shared": np.ones((3, 1)), "per_axis": np.eye(3)}
+_AXES = {"shared": np.ones((3, 1)), "per_axis": np.eye(3), "horizontal": np.eye(3)[:, :2]}
 
 
 @checked
 @_checks.quiet
 def constant_velocity(
-    T: ArrayLike, sigma_a: float, noise: Literal["shared", "per_axis"] = "shared"
+    T: ArrayLike, sigma_a: float, noise: Literal["shared", "per_axis", "horizontal"] = "shared"
 ) -> tuple[FloatArray, FloatArray]:
     """Return the transition matrix and process-noise covariance of the constant-velocity model.
 
@@ -30,10 +30,10 @@ def constant_velocity(
         Sampling intervals in s.
     sigma_a : float
         Standard deviation of the acceleration, constant during one interval, in m/s^2.
-    noise : {"shared", "per_axis"}
+    noise : {"shared", "per_axis", "horizontal"}
         "shared": one scalar acceleration drives all three axes at once, along (1, 1, 1); Q has
         rank one. This is Eq 17 as printed. "per_axis": each axis has an acceleration of its
-        own; Q has rank three.
+        own; Q has rank three. "horizontal": x and y have, and z moves uniformly; rank two.
 
     Returns
     -------
@@ -60,9 +60,9 @@ def constant_velocity(
 
 
 def dwna_gain(
-    T: FloatArray, sigma_a: float, noise: Literal["shared", "per_axis"]
+    T: FloatArray, sigma_a: float, noise: Literal["shared", "per_axis", "horizontal"]
 ) -> tuple[FloatArray, float]:
-    """Return G of shape (..., 6, 1) or (..., 6, 3), and sigma_a as a float (Eq 9).
+    """Return G of shape (..., 6, 1), (..., 6, 3) or (..., 6, 2), and sigma_a as a float (Eq 9).
 
     Raises ValueError unless sigma_a and noise are those of `constant_velocity`, and sigma_a^2 G G',
     which is Q, is finite. `T` itself is unchecked.

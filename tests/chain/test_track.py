@@ -136,6 +136,15 @@ def test_hum_and_a_drift_go_and_deviations_stay_right(room):
     assert low < total < 1.5 * high
 
 
+def test_live_states_are_those_at_the_times_from_which_they_are_known(room):
+    _, f, _ = room[0]
+    time, x, P = f.live
+    for k in (0, 7, -1):
+        at = f.at(time[k])
+        assert_allclose(x[k], at[0], rtol=1e-9)
+        assert_allclose(P[k], at[1], rtol=1e-9)
+
+
 def test_leading_axes_are_those_of_the_samples(room):
     iq, one, _ = room[0]
     two = replace(iq, x=iq.x[None, None], valid=iq.valid[None, None])

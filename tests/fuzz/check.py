@@ -9,6 +9,8 @@ EXAMPLES = 30  # odd calls of each function, the same ones every time; `make fuz
 OF_ROOMS = 8  # of the functions of one document, which take longer
 FEW = 4  # of those that take more than 20 ms a call
 SLOW = {
+    "chain.alternatives.explain",
+    "evaluation.symptoms.symptoms",
     "replication.judgments.judgments_text",
     "replication.judgments.read_judgments",
     "replication.judgments.verdicts_on_page",

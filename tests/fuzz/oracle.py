@@ -12,6 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
+from dopplerlib.estimation.initial_estimate import ImplausibleStart
+
 from .documented import refused
 from .values import Raised
 
@@ -55,7 +57,9 @@ def fresh(call):
 def invoke(target, arguments):
     """Call the target; a record is used as well: compared, hashed, pickled, and read."""
     several, arguments = _spread(target.function, dict(arguments))
-    result = target.function(*several, **arguments)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ImplausibleStart)  # a documented outcome ("Warns")
+        result = target.function(*several, **arguments)
     if dataclasses.is_dataclass(result) and target.record:
         _use(result)
     return result

@@ -7,7 +7,7 @@ from dopplerlib import constant_velocity
 
 # Powers of two and small whole numbers: every product below is exact.
 T, SIGMA = 4.0, 0.5
-BOTH = ["shared", "per_axis"]
+BOTH = ["shared", "per_axis", "horizontal"]
 
 
 def test_the_transition_moves_the_position_by_the_velocity_times_the_interval():
@@ -47,7 +47,7 @@ def test_independent_noise_has_the_same_variances_and_nothing_between_the_axes()
 
 
 def test_the_common_noise_has_rank_one_and_the_independent_rank_three():
-    for noise, rank in [("shared", 1), ("per_axis", 3)]:
+    for noise, rank in [("shared", 1), ("per_axis", 3), ("horizontal", 2)]:
         values = np.linalg.eigvalsh(constant_velocity(T, SIGMA, noise)[1])
         assert (values > 1e-12 * values.max()).sum() == rank
         assert values.min() >= -1e-12 * values.max()
@@ -88,5 +88,7 @@ def test_an_impossible_number_is_refused_by_name(name, bad):
 
 @pytest.mark.parametrize("bad", ["white", "Common", None, 1])
 def test_an_unknown_noise_is_refused(bad):
-    with pytest.raises(ValueError, match=f"noise must be one of 'shared', 'per_axis', got {bad!r}"):
+    with pytest.raises(
+        ValueError, match=f"noise must be one of 'shared', 'per_axis', 'horizontal', got {bad!r}"
+    ):
         constant_velocity(T, SIGMA, bad)
