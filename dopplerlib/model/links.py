@@ -9,6 +9,7 @@ from .. import _checks
 from .._hints import Count, between, checked
 from .._records import record
 from .._typing import ArrayLike, FloatArray
+from . import _link_fields
 from .motion import constant_velocity
 from .radar_array import RadarArray
 
@@ -100,10 +101,10 @@ class DopplerLinks:
     def __post_init__(self):
         """Check the fields, and give all of them their full shape."""
         model = _checks.one_of("clock_model", self.clock_model, get_args(ClockModel))
-        times = None if self.times is None else _times(self.times)
-        ends = [_ends("receivers", self.receivers, times)]
+        times = None if self.times is None else _link_fields.increasing(self.times)
+        ends = [_link_fields.ends("receivers", self.receivers, times)]
         if self.transmitters is not None:
-            ends.append(_ends("transmitters", self.transmitters, times))
+            ends.append(_link_fields.ends("transmitters", self.transmitters, times))
             _checks.check_leading(receivers=(ends[0], 1), transmitters=(ends[1], 1))
             ends = np.broadcast_arrays(*ends)
         lead = ends[0].shape[:-1]
@@ -115,7 +116,7 @@ class DopplerLinks:
             "transmitters": None if self.transmitters is None else ends[1].copy(),
             "wavelength": _checks.each_run("wavelength", wavelength, lead[-1:], ()).copy(),
             "bias": _checks.each_run("bias", bias, lead[-max(bias.ndim, 1) :], ()).copy(),
-            "clocks": _clocks(self.clocks, lead[-1]),
+            "clocks": _link_fields.clock_matrix(self.clocks, lead[-1]),
             "clock_model": model,
             "times": times,
         }
@@ -220,8 +221,8 @@ class DopplerLinks:
         if times is not None:
             from scipy.spatial.transform import Rotation
 
-            times = _times(times)
-            sensors = _ends("state", sensors, times)
+            times = _link_fields.increasing(times)
+            sensors = _link_fields.ends("state", sensors, times)
             arm = arm @ Rotation.from_rotvec(times[:, None] * rate).as_matrix().mT
         places, velocities = sensors[..., :3] + arm, sensors[..., 3:] + np.cross(rate, arm)
         both = np.concatenate([places, velocities], axis=-1)
@@ -385,44 +386,3 @@ def sample_times(
     if not T.ndim:
         return np.arange(K) * T
     return np.append(0.0, np.cumsum(_checks.exact_shape("T", T, (K,))[1:]))
-
-
-def _times(times):
-    times = _checks.one_row("times", times, _checks.moderate)
-    if not (np.diff(times) > 0).all():
-        raise ValueError(f"times must increase, got {times.tolist()}")
-    return times.copy()
-
-
-def _ends(name, states, times):
-    """Return states (N, 6) without times, or (K, N, 6)."""
-    states = _checks.moderate(name, states)
-    if states.ndim in (1, 2) and states.shape[-1] == 3:
-        states = np.concatenate([states, np.zeros(states.shape)], axis=-1)
-    states = np.atleast_2d(states)
-    K = () if times is None else times.shape
-    if states.shape[-1] != 6 or not states.size or states.shape[:-2] not in ((), K):
-        wanted = "(N, 3) or (N, 6)" if times is None else f"(N, 3), (N, 6) or ({K[0]}, N, 6)"
-        raise ValueError(f"{name} must have shape {wanted}, got {states.shape}")
-    if times is not None and states.ndim == 2:
-        states = np.tile(states, (len(times), 1, 1))
-        states[..., :3] += times[:, None, None] * states[..., 3:]
-    return states
-
-
-def _clocks(clocks, N):
-    """Return the matrix (N, C)."""
-    if clocks is None:
-        return np.zeros((N, 0))
-    if isinstance(clocks, str):
-        _checks.one_of("clocks", clocks, ("common", "each"))
-        return np.ones((N, 1)) if clocks == "common" else np.eye(N)
-    matrix = _checks.moderate("clocks", clocks)
-    if matrix.ndim == 1 and (matrix == np.round(matrix)).all():
-        groups, group = np.unique(matrix, return_inverse=True)
-        matrix = np.eye(len(groups))[group]
-    if matrix.ndim != 2 or len(matrix) != N:
-        raise ValueError(
-            f"clocks must be {N} whole numbers or have shape ({N}, C), got {matrix.shape}"
-        )
-    return matrix.copy()
