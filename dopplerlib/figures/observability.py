@@ -118,6 +118,26 @@ def bounds_by_change(
     ax.legend(loc="upper center")
 
 
+@drawing(7, 3.2)
+def bounds_by_motion(
+    figure: Figure, size: Array, turning: dict[str, Array], accelerating: dict[str, Array]
+) -> None:
+    """Draw the bound on range against the motion of the platform, one panel for each kind.
+
+    size (M,): Rates of turning in rad/s, and accelerations in m/s^2.
+    turning, accelerating (M,): Bounds in m, by label.
+    """
+    panels = figure.subplots(1, 2, sharey=True)
+    kinds = {"rate of the turn (rad/s)": turning, "acceleration (m/s²)": accelerating}
+    for ax, (name, bounds) in zip(panels, kinds.items(), strict=True):
+        for (label, bound), style, color in zip(bounds.items(), _STYLES, _COLORS, strict=False):
+            ax.semilogy(size, bound, style, color=color, label=label)
+        ax.set(xlabel=name)
+        ax.margins(x=0)
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18))
+    panels[0].set_ylabel("bound on range (m)")
+
+
 @drawing(7, 3.5)
 def estimates(
     figure: Figure,

@@ -34,6 +34,9 @@ def figures():
         "bounds_by_change": draw.bounds_by_change(
             SIZE, {"lifted": 1 / SIZE, "moved": 2 / SIZE}, {"plain": 50.0}
         ),
+        "bounds_by_motion": draw.bounds_by_motion(
+            SIZE, {"about": SIZE, "across": 2 * SIZE}, {"ahead": 3 * SIZE}
+        ),
         "estimates": draw.estimates(
             {"few": DOTS, "many": STATE + 0.1 * (DOTS - STATE)},
             STATE,
@@ -105,6 +108,12 @@ def test_bounds_are_over_centimeters_of_change(figures):
     assert_allclose(shown["lifted"].get_xdata(), 100 * SIZE)
     assert_allclose(shown["moved"].get_ydata(), 2 / SIZE)
     assert [text.get_text() for text in ax.texts] == ["plain"]
+
+
+def test_bounds_by_motion_have_a_panel_for_turns_and_one_for_accelerations(figures):
+    turning, accelerating = map(lines, figures["bounds_by_motion"].axes)
+    assert_allclose(turning["across"].get_xydata(), np.transpose([SIZE, 2 * SIZE]))
+    assert_allclose(accelerating["ahead"].get_xydata(), np.transpose([SIZE, 3 * SIZE]))
 
 
 def test_estimates_are_dots_families_are_curves_and_the_truth_a_square(figures):

@@ -229,6 +229,17 @@ def test_a_missing_measurement_informs_of_nothing():
     assert not fisher_information(x, links, np.nan).any()
 
 
+def test_a_clock_that_is_known_costs_nothing():
+    plain = DopplerLinks.one_way(LISTENERS, WAVES)
+    clocked = replace(plain, clocks="common", clock_model="drift")
+    x, K_T = np.r_[TARGETS[0], 3.0, -1.0], (50, 0.1, "constant_velocity")
+    known = crlb(x, clocked, 0.4, *K_T, free=np.arange(8) < 6)
+    np.testing.assert_allclose(known[:6, :6], crlb(x[:6], plain, 0.4, *K_T), rtol=1e-6)
+    assert not known[6:].any()
+    unknown = crlb(x, clocked, 0.4, *K_T)
+    assert (np.diag(unknown)[:6] > np.diag(known)[:6]).all()
+
+
 def test_an_unknown_clock_of_each_link_leaves_changes_in_time_only():
     links = DopplerLinks.two_way(LISTENERS, clocks="each")
     assert not np.isfinite(np.diag(crlb(np.r_[TARGETS[0], np.zeros(N)], links, 0.1))[:6]).any()
