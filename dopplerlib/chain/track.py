@@ -16,7 +16,9 @@ from ..model.motion import constant_velocity
 from ..signal.frequency import ml_frequency
 from ..signal.impairments import correct_iq_imbalance, remove_mean
 from ..signal.lines import near_lines, remove_lines
+from ..signal.real_tone import ml_frequency_real, ml_frequency_real_dc
 from ..signal.sliding import sliding_doppler
+from ..signal.straight_signs import straight_signs
 from ._box import bounds
 from ._hypotheses import filters, hypotheses, parts
 from .baseband import Baseband
@@ -251,6 +253,7 @@ def track_iq(
     lines: ArrayLike = (),
     line_width: Positive = 4.0,
     estimator: Callable[..., Any] = ml_frequency,
+    signs: str | ArrayLike | None = None,
     variance_inflation: Positive = 1.0,
     least_snr: Positive = 20.0,
     search: Literal["parts", "whole"] = "parts",
@@ -293,7 +296,12 @@ def track_iq(
     line_width : float
         Shifts nearer than that to a line are missing, in Hz.
     estimator : callable
-        Frequency estimator of a window, see `sliding_doppler`.
+        Frequency estimator of a window, see `sliding_doppler`. For modules without Q, whose samples
+        are analytic signals, `ml_frequency_real`.
+    signs : {"straight"} or array_like of int, broadcast to (K, N), optional
+        Signs of Doppler shifts that such modules do not tell: 1 where the target approaches, -1
+        where it recedes, 0 for a shift that is to be missing; or "straight", which takes them from
+        the whole record by the law of straight flight, see `straight_signs`.
     variance_inflation : float
         Factor on the variances of the shifts.
     least_snr : float
@@ -379,11 +387,16 @@ def track_iq(
         x = correct_iq_imbalance(x, valid)
     leading = x.shape[:-2]
     x, valid = (v.reshape(-1, *v.shape[-2:]) for v in (x, valid))
-    d = sliding_doppler(x, iq.fs, n, step, estimator, band=(-top, top), valid=valid)
+    real = _without_q(estimator, signs)
+    band = (0.0 if real else -top, top)
+    d = sliding_doppler(x, iq.fs, n, step, estimator, band=band, valid=valid)
     time = iq.first + d.time - iq.delay
     available_at = iq.first + (np.arange(len(d.time)) * step + n - 1) / iq.fs
     seen = (n * d.snr >= least_snr) & ~near_lines(d.frequency, lines, line_width)
     z = np.where(seen, d.frequency, np.nan)
+    if real:
+        z = _signed(z, d.frequency_std, signs)
+        seen = ~np.isnan(z)
     std = np.where(seen, d.frequency_std * np.sqrt(variance_inflation / iq.noise_gain), np.inf)
     used = int(np.sum(available_at <= _checks.positive_number("start", start) + 1e-9))
     if used < 2:
@@ -442,6 +455,32 @@ def _warn_unless_plausible(costs, degrees):
             ImplausibleStart,
             stacklevel=4,
         )
+
+
+def _without_q(estimator, signs):
+    """Return whether an estimator is for modules without Q, and raise unless signs suit it."""
+    real = estimator in (ml_frequency_real, ml_frequency_real_dc)
+    if real and signs is None:
+        raise ValueError(
+            "signs must be given with an estimator for modules without Q, which do not tell them: "
+            "'straight', or 1 and -1 for each sensor, got None"
+        )
+    if not real and signs is not None:
+        raise ValueError(f"signs must be None, since this estimator finds them, got {signs!r:.80}")
+    return real
+
+
+def _signed(z, std, signs):
+    """Return absolute values of shifts (R, K, N) with their signs; NaN where there is none."""
+    if isinstance(signs, str):
+        _checks.one_of("signs", signs, ("straight",))
+        signs = straight_signs(z, np.where(np.isfinite(std), std, 1.0))
+    else:
+        signs = _checks.finite("signs", signs)
+        if not np.isin(signs, (-1, 0, 1)).all():
+            raise ValueError(f"signs must be 1, -1 or 0, got {signs.tolist()!r:.80}")
+        signs = _checks.each_run("signs", signs, z.shape, ())
+    return np.where(signs == 0, np.nan, signs * z)
 
 
 def _length(name, seconds, iq):

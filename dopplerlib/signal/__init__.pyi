@@ -18,6 +18,7 @@ from . import rinex as rinex
 from . import scatter as scatter
 from . import sliding as sliding
 from . import spectrogram as spectrogram
+from . import straight_signs as straight_signs
 from . import synthesis as synthesis
 from . import validity as validity
 from . import waveforms as waveforms

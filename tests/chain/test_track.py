@@ -10,13 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.signal import hilbert
 from scipy.stats import chi2
 
 from dopplerlib import RadarArray, iq_from_geometry, nis
 from dopplerlib.chain.baseband import Baseband
 from dopplerlib.chain.track import track_iq
 from dopplerlib.estimation.initial_estimate import ImplausibleStart
+from dopplerlib.signal.frequency import ml_frequency
 from dopplerlib.signal.impairments import add_dc, add_iq_imbalance
+from dopplerlib.signal.real_tone import ml_frequency_real
 from dopplerlib.signal.recording import Recording, write_sigmf
 from dopplerlib.signal.synthesis import complex_noise
 
@@ -143,6 +146,57 @@ def test_live_states_are_those_at_the_times_from_which_they_are_known(room):
         at = f.at(time[k])
         assert_allclose(x[k], at[0], rtol=1e-9)
         assert_allclose(P[k], at[1], rtol=1e-9)
+
+
+def crossing(run):
+    """Return analytic signals of modules without Q on all walls, and the last state."""
+    rng = np.random.default_rng([102, run])
+    places = [[0, 0, 2], [6, 0, 2.2], [6, 5, 2], [0, 5, 2.2], [3, 0, 1.8]]
+    array = RadarArray(places, wavelength=0.0125)
+    velocity = np.array([1, 0.3, 0]) + np.append(rng.uniform(-0.3, 0.3, 2), 0)
+    start = np.array([1.5, 2.5, 1]) + np.append(rng.uniform(-0.4, 0.4, 2), 0)
+    path = start + np.arange(2000)[:, None] / 1e3 * velocity
+    x = hilbert(iq_from_geometry(path, array, 20, rng=rng).real)
+    return Baseband(x, 1e3, array), np.append(path[-1], velocity)
+
+
+ACROSS = {
+    "box": ([0, 0, 1], [6, 5, 1]),
+    **SETTINGS,
+    "start": 0.7,
+    "estimator": ml_frequency_real,
+}
+
+
+def test_modules_without_q_track_a_straight_flight():
+    """Signs come from the law of straight flight. Normalized errors as above, in 8 runs."""
+    total = 0.0
+    for run in range(8):
+        iq, truth = crossing(run)
+        found = track_iq(iq, **ACROSS, signs="straight")
+        x, P, _ = found.at(1.999)
+        error = (x - truth)[[0, 1, 3, 4]]
+        total += error @ np.linalg.solve(P[np.ix_([0, 1, 3, 4], [0, 1, 3, 4])], error)
+        assert found.plausible
+    low, high = chi2.ppf([1e-6, 1 - 1e-6], 4 * 8)
+    assert low < total < 1.5 * high
+
+
+def test_signs_can_be_given_and_must_be_where_nothing_tells_them():
+    iq, _ = crossing(0)
+    law = track_iq(iq, **ACROSS, signs="straight")
+    given = np.where(np.isnan(law.shift), 0, np.sign(law.shift)).astype(int)
+    assert track_iq(iq, **ACROSS, signs=given) == law
+    for signs, message in [
+        (None, "signs must be given with an estimator for modules without Q, .*, got None"),
+        ("any", "signs must be one of 'straight', got 'any'"),
+        ([1, 1, 2, 1, 1], "signs must be 1, -1 or 0, got"),
+        ([1, 1], "signs must have"),
+    ]:
+        with pytest.raises(ValueError, match=f"^{message}"):
+            track_iq(iq, **ACROSS, signs=signs)
+    with pytest.raises(ValueError, match="signs must be None, since this estimator finds them"):
+        track_iq(iq, **{**ACROSS, "estimator": ml_frequency}, signs="straight")
 
 
 def test_leading_axes_are_those_of_the_samples(room):
