@@ -12,7 +12,7 @@ _ANGLE = np.linspace(0, 2 * np.pi, 181)
 
 @drawing(7.0, 3.4)
 def steps(figure: Figure, distances: dict[str, Array]) -> None:
-    """Draw how far the search still is from its end, from many starts.
+    """Draw the distance of a search from its end, step by step, from many starts.
 
     distances: For each receiver the distances (starts, steps) in m.
     """
@@ -35,7 +35,7 @@ def fixes(
     spread: dict[str, Array],
     places: dict[str, dict[str, tuple[Array, Array]]],
 ) -> None:
-    """Draw fixes of single epochs above, and of whole recordings below, with what they claim.
+    """Draw fixes of single epochs above, and of whole recordings below, with their ellipses.
 
     epochs: For each receiver the fixes (K, 2) of single epochs, east and north of the place by
         code ranges, in m.
@@ -90,7 +90,7 @@ def filtered(
     claimed: dict[str, Array],
     batch: dict[str, float],
 ) -> None:
-    """Draw the errors of the filter from epoch to epoch, and what it claims.
+    """Draw the errors of the filter from epoch to epoch, and its standard deviation.
 
     time, error, claimed: For each receiver (K,): s, and m.
     batch: Errors of the fix by all epochs at once in m.
