@@ -41,35 +41,40 @@ def outlier_fraction(terms):
     return float(np.exp(found.x))
 
 
-def derivatives(terms, theta, step=1e-4):
-    """Return the scores (p, ...) of the terms of a log likelihood, and minus its Hessian (p, p).
+def scores(terms, theta, step):
+    """Return the scores (p, ...) of the terms of a log likelihood by central differences.
 
     terms(theta) (...): The terms, smooth in parameters theta (p,) of order one, such as logarithms.
     """
+    ends = [(terms(theta + h), terms(theta - h)) for h in step * np.eye(len(theta))]
+    return np.stack([(up - down) / (2 * step) for up, down in ends])
+
+
+def information(terms, theta, step):
+    """Return minus the Hessian (p, p) of a log likelihood, see `scores`."""
     p = len(theta)
-    steps = step * np.eye(p)
-    middle = np.sum(terms(theta))
-    up, down = ([terms(theta + sign * h) for h in steps] for sign in (1, -1))
-    hessian = np.diag([np.sum(a) + np.sum(b) - 2 * middle for a, b in zip(up, down, strict=True)])
+    steps, middle = step * np.eye(p), np.sum(terms(theta))
+    hessian = np.empty((p, p))
     for i in range(p):
+        ends = (np.sum(terms(theta + sign * steps[i])) for sign in (1, -1))
+        hessian[i, i] = sum(ends) - 2 * middle
         for j in range(i):
             both, other = steps[i] + steps[j], steps[i] - steps[j]
             ends = [np.sum(terms(theta + v)) for v in (both, -both, other, -other)]
             hessian[i, j] = hessian[j, i] = (ends[0] + ends[1] - ends[2] - ends[3]) / 4
-    score = (np.stack(up) - np.stack(down)) / (2 * step)
-    return score, -hessian / step**2
+    return -hessian / step**2
 
 
-def deviations(score, information):
+def deviations(score, hessian):
     """Return the standard deviations (p,) of parameters from the scores of independent blocks.
 
     score (p, B): Sums over each block.
-    information (p, p): Minus the Hessian. If it is not positive definite, the deviations are NaN.
+    hessian (p, p): See `information`. If it is not positive definite, the deviations are NaN.
     """
     blocks = score.shape[1]
     off = score - score.mean(axis=1, keepdims=True)
     meat = off @ off.T * blocks / (blocks - 1)
-    if not np.isfinite(information).all() or np.linalg.eigvalsh(information)[0] <= 0:
+    if not np.isfinite(hessian).all() or np.linalg.eigvalsh(hessian)[0] <= 0:
         return np.full(len(score), np.nan)
-    bread = np.linalg.inv(information)
+    bread = np.linalg.inv(hessian)
     return np.sqrt(np.diagonal(bread @ meat @ bread))

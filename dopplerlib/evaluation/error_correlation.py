@@ -6,7 +6,7 @@ from .. import _checks
 from .._hints import Count, Probability, checked
 from .._records import record
 from .._typing import ArrayLike
-from ._robust import derivatives, deviations, log_density
+from ._robust import deviations, information, log_density, scores
 from .intervals import ConfidenceInterval
 
 _FEWEST = 5  # blocks: with fewer, the interval of a variance says nothing
@@ -139,11 +139,11 @@ def error_correlation(
             f"residual must hold {_FEWEST} blocks of {length} samples, four times its memory, "
             f"got {blocks}"
         )
-    score, information = derivatives(lambda v: terms(v, outliers), theta)
+    at = (lambda v: terms(v, outliers)), theta, 1e-3
     block = place[0] * each + place[1] * each // K
-    sums = np.stack([np.bincount(block, one, blocks) for one in score])
-    off = stdtrit(blocks - 1, (1 + confidence) / 2) * deviations(sums, information)
-    ends = np.array([[values(theta + sign * off)[i] for i in range(4)] for sign in (0, -1, 1)])
+    sums = np.stack([np.bincount(block, one, blocks) for one in scores(*at)])
+    off = deviations(sums, information(*at)) * stdtrit(blocks - 1, (1 + confidence) / 2)
+    ends = np.array([values(at) for at in (theta, theta - off, theta + off)])
     mean, sigma, rhos, colored = (ConfidenceInterval(*map(float, v)) for v in ends.T)
     tau = -step / np.log(rho) if rho > 0 else 0.0
     return ErrorCorrelation(mean, sigma, rhos, colored, float(tau), step, blocks)

@@ -10,8 +10,12 @@ from .._hints import Positive, Probability, checked
 from .._records import record
 from ..estimation.track import Track
 from ._innovations import of_track
-from ._robust import derivatives, deviations, log_density, outlier_fraction
+from ._robust import deviations, information, log_density, outlier_fraction, scores
 from .intervals import ConfidenceInterval
+
+_STEP = 0.02  # of differences: a gate makes a likelihood rough on a smaller scale
+_GAIN = 0.01  # of the log likelihood: less is a tenth of a standard deviation
+_MOST = 30
 
 
 @record
@@ -23,7 +27,7 @@ class NoiseFit:
     parameters : dict of str to ConfidenceInterval
         Estimates, by name, with their intervals.
     outliers : float
-        Fraction of the measurements that follows Cauchy's law. Most outliers do, and some that are
+        Fraction of the samples that follows Cauchy's law. Most outliers do, and some that are
         none; a density for all kinds of outliers does not count them.
     log_likelihood : float
         Of all measurements.
@@ -42,6 +46,7 @@ def fit_noise(
     tracker: Callable[..., Track],
     start: dict[str, Positive],
     *,
+    outliers: bool = True,
     confidence: Probability = 0.95,
 ) -> NoiseFit:
     """Estimate noise parameters of a filter by the likelihood of its innovations.
@@ -53,6 +58,9 @@ def fit_noise(
         of the measurements. It is smooth in them: a gate, if there is one, is "soft".
     start : dict of str to float
         Values at which the search starts: deviations, variances, time constants; all are positive.
+    outliers : bool
+        Whether some innovations may be outliers. A target that maneuvers now and then makes
+        innovations that look like them: False counts them in, and makes the process noise larger.
     confidence : float
         Probability of each interval.
 
@@ -69,7 +77,7 @@ def fit_noise(
     -----
     The density of a record is the product of those of its innovations (Schweppe 1965), whatever is
     missing. Here it is Gaussian but for a fraction of outliers with the tails of Cauchy's law; its
-    maximum over the logarithms of the parameters is found by BFGS. The intervals are of the
+    maximum over the logarithms of the parameters is found by scoring. The intervals are of the
     sandwich form, from the scores of single samples, which are uncorrelated where the model is
     right. Parameters that act alike, such as a white and a quickly decaying error, have wide
     intervals.
@@ -88,8 +96,7 @@ def fit_noise(
     >>> [found[name].low < value < found[name].high for name, value in (("q", 0.01), ("r", 1.0))]
     [True, True]
     """
-    from scipy.optimize import minimize
-    from scipy.special import ndtri
+    from scipy.special import ndtri  # here: it takes longer to load than all the rest
 
     if not start:
         raise ValueError(f"start must hold a parameter, got {start}")
@@ -106,23 +113,51 @@ def fit_noise(
         used = size > 0
         form, size, log_det = form[used], size[used], np.linalg.slogdet(S)[1]
         log_det = np.broadcast_to(log_det, used.shape)[used]
-        return lambda outliers: log_density(form, log_det, size, outliers)
+        return lambda fraction: log_density(form, log_det, size, fraction)
 
-    def cost(theta):
-        terms = densities(theta)
-        return -float(np.mean(terms(outlier_fraction(terms))))
-
-    found = minimize(
-        cost, np.log(list(start.values())), method="BFGS", options={"gtol": 1e-4, "eps": 1e-5}
-    )
-    theta = found.x
-    outliers = outlier_fraction(densities(theta))
-    score, information = derivatives(lambda v: densities(v)(outliers), theta, 1e-3)
-    off = ndtri((1 + confidence) / 2) * deviations(score, information)
-    ends = np.exp(theta + np.outer((0, -1, 1), off))
+    theta = np.log(list(start.values()))
+    theta, fraction, total, converged = _climb(densities, theta, outliers)
+    terms = _given(densities, fraction), theta, _STEP
+    off = deviations(scores(*terms), information(*terms)) * ndtri((1 + confidence) / 2)
+    ends = np.exp([theta, theta - off, theta + off])
     return NoiseFit(
         {name: ConfidenceInterval(*map(float, v)) for name, v in zip(start, ends.T, strict=True)},
-        outliers,
-        -found.fun * score.shape[1],
-        bool(np.isfinite(off).all()),
+        fraction,
+        total,
+        bool(converged and np.isfinite(off).all()),
     )
+
+
+def _climb(densities, theta, outliers):
+    """Return the parameters of the greatest likelihood, the outliers, its value, and whether found.
+
+    Fisher's scoring with the outer product of the scores (Berndt, Hall, Hall, Hausman 1974), no
+    longer than one unit in a step, which is halved until it leads up.
+    """
+
+    def value(at):
+        terms = densities(at)
+        fraction = outlier_fraction(terms) if outliers else 0.0
+        return fraction, float(np.sum(terms(fraction)))
+
+    fraction, total = value(theta)
+    for _ in range(_MOST):
+        score = scores(_given(densities, fraction), theta, _STEP)
+        slope = score.sum(axis=1)
+        step = np.linalg.lstsq(score @ score.T, slope)[0]
+        if slope @ step < _GAIN:
+            return theta, fraction, total, True
+        step /= max(1.0, np.abs(step).max())
+        for _ in range(_MOST):
+            found = value(theta + step)
+            if found[1] > total:
+                break
+            step /= 2
+        else:
+            return theta, fraction, total, False
+        theta, (fraction, total) = theta + step, found
+    return theta, fraction, total, False
+
+
+def _given(densities, fraction):
+    return lambda theta: densities(theta)(fraction)

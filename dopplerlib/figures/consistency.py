@@ -127,6 +127,22 @@ def averages_spread(
     figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=3)
 
 
+@drawing(7.0, 3.4)
+def autocorrelations(figure: Figure, curves: dict[str, Array], bound: float) -> None:
+    """Draw the autocorrelation of innovations of several filters, and the band of white ones.
+
+    curves (lags,): Mean autocorrelation at lags 1, 2, ... of each filter, by label.
+    bound: Half width of the band in which 95 % of the values of a white record are.
+    """
+    ax = figure.subplots()
+    ax.axhspan(-bound, bound, color=BOUND, alpha=0.25, lw=0, label="95 % of a white record")
+    for (label, curve), (color, ls, marker) in zip(curves.items(), CAUSES, strict=False):
+        lags = np.arange(1, len(curve) + 1)
+        ax.plot(lags, curve, color=color, ls=ls, marker=marker, ms=4, label=label)
+    ax.set(xlabel="lag (samples used)", ylabel="autocorrelation of innovations", ylim=(-0.2, 1))
+    ax.legend(loc="upper right")
+
+
 @drawing(7.0, 5.0)
 def causes(
     figure: Figure, results: dict[str, Consistency], interval: tuple[float, ...], median: float

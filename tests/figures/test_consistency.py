@@ -27,6 +27,7 @@ RESULTS = {
     label: Consistency(TIME, np.zeros((4, 6)), *STATES, factor * NEES, NIS, np.zeros(9))
     for label, factor in (("printed", 1), ("repaired", 0.1))
 }
+CURVES = {"white": np.array([0.7, 0.5, 0.3]), "colored": np.array([0.02, -0.01, 0.0])}
 SPREAD, CLAIMED = np.array([3.0, 2, 1, 1]), {"x": np.ones(4), "y": np.full(4, 0.5)}
 
 
@@ -37,12 +38,15 @@ def figures():
         "clouds": draw.clouds(ERRORS, COVARIANCES, ("x", "y")),
         "one_run": draw.one_run(TIME, VALUES, INTERVAL),
         "averages_spread": draw.averages_spread(AVERAGES, INTERVALS),
+        "autocorrelations": draw.autocorrelations(CURVES, 0.1),
         "causes": draw.causes(RESULTS, INTERVAL, 5.35),
         "claims": draw.claims(TIME + 0.001, SPREAD, CLAIMED),
     }
 
 
-NAMES = ["chi_square", "clouds", "one_run", "averages_spread", "causes", "claims"]
+NAMES = [
+    "chi_square", "clouds", "one_run", "averages_spread", "autocorrelations", "causes", "claims",
+]  # fmt: skip
 
 
 def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
@@ -101,6 +105,14 @@ def test_the_medians_of_both_statistics_are_drawn_one_interval_after_the_start(f
         assert_allclose(shown["printed"].get_xydata().T, [TIME + 0.001, np.median(values, axis=0)])
         assert_allclose(shown["repaired"].get_ydata(), factor * np.median(values, axis=0))
         assert set(shown["their median"].get_ydata()) == {5.35}
+
+
+def test_the_autocorrelations_are_drawn_from_lag_one_over_the_band(figures):
+    (ax,) = figures["autocorrelations"].axes
+    for label, curve in CURVES.items():
+        assert_allclose(lines(ax)[label].get_xydata().T, [[1, 2, 3], curve])
+    (span,) = ax.patches
+    assert_allclose((span.get_y(), span.get_y() + span.get_height()), (-0.1, 0.1))
 
 
 def test_the_claims_are_drawn_beside_the_error(figures):
