@@ -228,7 +228,7 @@ def remedy_runs(
 
 
 def _judged(track, truth, after, used, lags):
-    """Return how a track did after it settled; `used` says at which samples it updated."""
+    """Return errors and statistics of a settled track; `used` are the samples of its updates."""
     n, m = truth.shape[-1], track.S.shape[-1]
     error = (track.x[..., :n] - truth)[:, after]
     weighted = np.linalg.solve(track.P[:, after, :n, :n], error[..., None])[..., 0]
