@@ -23,6 +23,7 @@ from dopplerlib.estimation import (
     steady_state,
     thinning,
     variable_projection,
+    whitening,
 )
 from dopplerlib.estimation.imm_records import ImmModel
 from dopplerlib.model.motion import cwna_process_noise, ncv_transition
@@ -90,6 +91,9 @@ CALLS = {
     maximum_likelihood.ml_initialize: {
         "z": shifts, "array": array, "sigma_f": 0.1, "T": 0.001, "box": box, "workers": 1,
     },
+    whitening.whitening_matrices: {
+        "correlation": [1.0, 0.3], "there": np.ones((4, 2), bool),
+    },
     variable_projection.velocity_given_position: {
         "z": shifts[0], "array": array, "sigma_f": 0.1, "p": state[:3], "in_plane": True,
     },
@@ -117,7 +121,7 @@ CALLS = {
 # Arguments by what they are. An argument of these names is of this kind in every function.
 COVARIANCES = ("P", "P0", "P1", "P2", "Q", "R", "R1", "R2")
 ITERABLES = ("wrap", "scans", "keep", "box", "models")
-BOOLEANS = ("accept", "in_plane")
+BOOLEANS = ("accept", "in_plane", "there")
 NOT_NUMBERS = (
     "points", "array", "start", "manager", "h", "gate", "state", *ITERABLES, *BOOLEANS
 )  # fmt: skip

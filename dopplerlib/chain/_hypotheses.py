@@ -16,6 +16,7 @@ import numpy as np
 
 from ..estimation.extended_kalman import ekf
 from ..estimation.maximum_likelihood import ml_initialize
+from ..estimation.whitening import whitening_matrices
 from ..model.doppler import doppler_jacobian
 
 # Hypotheses whose chi-square is higher than the least by this have a likelihood of 3e-7 of it.
@@ -42,20 +43,24 @@ def parts(box, array):
     return boxes
 
 
-def hypotheses(z, std, array, T, apart, boxes):
+def hypotheses(z, std, array, T, apart, boxes, correlation=None):
     """Return initial states (runs, H, 6), chi-squares (runs, H), and weights (runs, K, N).
 
     All shifts of a record get the same weight, so the search does not depend on how large it is.
     The weights are standard deviations, infinite where a shift is missing.
     """
-    # Overlapping windows share samples, and their errors are correlated. Of every `apart` windows
-    # one is taken, counted back from the last: the start is the state at its time.
+    # Overlapping windows share samples, and their errors are correlated. Unless this is known, of
+    # every `apart` windows one is taken, counted back from the last: the start is the state at its
+    # time.
     early = slice((z.shape[1] - 1) % apart, None, apart)
     z, missing = z[:, early], np.isinf(std[:, early])
     total = np.sum(np.where(missing, 0.0, std[:, early]) ** 2, axis=(1, 2))
     variance = total / np.maximum(np.sum(~missing, axis=(1, 2)), 1)
     # The search gets a deviation of one; its chi-squares are divided by the variance afterwards.
-    found = [ml_initialize(z, array, 1.0, apart * T, box, at="last") for box in boxes]
+    found = [
+        ml_initialize(z, array, 1.0, apart * T, box, at="last", correlation=correlation)
+        for box in boxes
+    ]
     states, costs = [s.x for s in found], [s.cost for s in found]
     if len(boxes) == 1:  # no plane cuts the box: the second-best state is the other hypothesis
         states, costs = [*states, found[0].second_x], [*costs, found[0].second_cost]
@@ -63,11 +68,12 @@ def hypotheses(z, std, array, T, apart, boxes):
     return np.stack(states, axis=1), np.stack(costs, axis=1) / variance[:, None], weights
 
 
-def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs, noise="shared"):
+def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs, noise="shared",
+            correlation=None):  # fmt: skip
     """Return x, P, innovation, S, nis, memory and score of the filters of one run.
 
     `free` (6,) says which components of the state are unknown at the start.
-    `noise` is that of `constant_velocity`.
+    `noise` is that of `constant_velocity`, `correlation` that of the windows of the start.
     """
     shape = (len(states), 1 + len(z) - used)
     x, P = np.full((*shape, 6), np.nan), np.full((*shape, 6, 6), np.nan)
@@ -77,7 +83,7 @@ def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs
     factors = {}
     costs = np.where(np.isnan(costs), np.inf, costs)
     for i in np.flatnonzero(costs < costs.min() + CARRIED):
-        covariance = start_covariance(states[i], array, weights, apart * T, free)
+        covariance = start_covariance(states[i], array, weights, apart * T, free, correlation)
         if covariance is None:
             continue
         x[i, 0], P[i, 0], score[i] = states[i], covariance, costs[i]
@@ -122,7 +128,7 @@ def _memory(innovation, factor):
     return np.sum(normal[1:] * normal[:-1]) / power if power > 0 else np.nan
 
 
-def start_covariance(x, array, std, T, free):
+def start_covariance(x, array, std, T, free, correlation=None):
     """Return the covariance of a state at the last sample by its Fisher information, or None."""
     if not np.isfinite(x).all():
         return None
@@ -131,6 +137,9 @@ def start_covariance(x, array, std, T, free):
     F[:, :3, 3:] = back[:, None, None] * np.eye(3)
     # An infinite deviation leaves nothing of the slope.
     slopes = doppler_jacobian(np.einsum("kij,j->ki", F, x), array) @ F / std[..., None]
+    if correlation is not None:
+        W = whitening_matrices(correlation, np.isfinite(std))
+        slopes = np.einsum("nkl,lni->kni", W, slopes)
     # The covariance is (J'J)^-1 with J = `slopes`. With columns scaled to length one,
     # J D^-1 = U W V', it is D^-1 V W^-2 V' D^-1: the product of a root with its transpose.
     slopes = np.compress(free, slopes.reshape(-1, 6), axis=1)

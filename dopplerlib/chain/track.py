@@ -15,6 +15,7 @@ from ..estimation.track import Track
 from ..model.motion import constant_velocity
 from ..signal.frequency import ml_frequency
 from ..signal.impairments import correct_iq_imbalance, remove_mean
+from ..signal.laws import overlap_correlation_discrete
 from ..signal.lines import near_lines, remove_lines
 from ..signal.real_tone import ml_frequency_real, ml_frequency_real_dc
 from ..signal.sliding import sliding_doppler
@@ -257,6 +258,7 @@ def track_iq(
     variance_inflation: Positive = 1.0,
     least_snr: Positive = 20.0,
     search: Literal["parts", "whole"] = "parts",
+    start_windows: Literal["side by side", "all"] = "side by side",
     noise: Literal["shared", "per_axis", "horizontal"] = "shared",
 ) -> IqTrack:
     """Detect and track a target in the IQ samples of an array.
@@ -311,6 +313,11 @@ def track_iq(
         the box between the planes through the middle of the array. "whole": the likeliest and the
         second one that `ml_initialize` finds in the whole box; so it is also if there is one part
         only.
+    start_windows : {"side by side", "all"}
+        Windows of the start where they overlap. "side by side": as many as share no samples.
+        "all": all, with the correlation of their errors by `overlap_correlation_discrete`. With a
+        hop of a quarter of a window the errors of the start are a quarter, of a target that flies
+        straight meanwhile; a target that does not is off by more than is claimed.
     noise : {"shared", "per_axis", "horizontal"}
         Whether the velocities wander together, as in the paper's Eq 17, each by itself, as those of
         a target do that may turn, or those along x and y only, as those of a target do whose height
@@ -335,10 +342,10 @@ def track_iq(
 
     Notes
     -----
-    The start sees windows side by side only, even if there are more that overlap, and gives all of
-    them the same weight. Hypotheses much less likely than the best are dropped there and then.
-    There is a plane at right angles to each axis along which the sensors lie apart: a ring, which
-    confuses states left and right, and above and below, has two of them.
+    The start gives all of its windows the same weight. Hypotheses much less likely than the best
+    are dropped there and then. There is a plane at right angles to each axis along which the
+    sensors lie apart: a ring, which confuses states left and right, and above and below, has two
+    of them.
 
     The deviations are those of the bound at the *measured* signal-to-noise ratio of each window and
     sensor.
@@ -402,7 +409,9 @@ def track_iq(
     if used < 2:
         raise ValueError(f"start must hold at least two windows, got {used} in {start} s")
     T = step / iq.fs
-    apart = -(-n // step)
+    apart, correlation = -(-n // step), None
+    if start_windows == "all":
+        apart, correlation = 1, overlap_correlation_discrete(n, np.arange(0, n, step))
     free = lower < upper
     if -(-used // apart) * len(iq.array) < free.sum():
         raise ValueError(
@@ -410,13 +419,15 @@ def track_iq(
         )
     whole = search == "whole"
     boxes = [(lower, upper)] if whole else parts((lower, upper), iq.array)
-    states, costs, weights = hypotheses(z[:, :used], std[:, :used], iq.array, T, apart, boxes)
+    states, costs, weights = hypotheses(
+        z[:, :used], std[:, :used], iq.array, T, apart, boxes, correlation
+    )
     degrees = np.isfinite(weights).sum(axis=(1, 2)) - free.sum()
     _warn_unless_plausible(costs, degrees)
     fixed = iq.array, T, used, apart, velocity_random_walk / np.sqrt(T), free
     try:
         each = [
-            filters(z, s, early, *fixed, *starts, noise=noise)
+            filters(z, s, early, *fixed, *starts, noise=noise, correlation=correlation)
             for z, s, early, *starts in zip(z, std, weights, states, costs, strict=True)
         ]
     except np.linalg.LinAlgError:

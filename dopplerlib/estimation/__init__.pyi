@@ -21,3 +21,4 @@ from . import steady_state as steady_state
 from . import thinning as thinning
 from . import track as track
 from . import variable_projection as variable_projection
+from . import whitening as whitening

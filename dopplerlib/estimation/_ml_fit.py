@@ -7,6 +7,7 @@ import numpy as np
 from ._ml_covariance import bootstrap, information, sandwich, slopes
 from ._ml_polish import Refined, least_squares, refine
 from ._ml_robust import TIE, robust_fit
+from .whitening import whitening_matrices
 
 
 class Options(NamedTuple):
@@ -59,7 +60,7 @@ def fit_run(problem, z, deviations, options, rng):
     if options.correlation is not None:
         # Errors of wrong windows belong to no law: those windows are missing, all others count.
         weights, robust = np.where(kept, 1.0, 0.0), False
-        roots = white_roots(options.correlation, kept)
+        roots = whitening_matrices(options.correlation, kept)
         data = problem.data(np.where(kept, z, np.nan), scale * deviations, roots)
         x = np.concatenate([found.x, second.x])
         clocks = np.concatenate([found.clocks, second.clocks])
@@ -83,23 +84,6 @@ def fit_run(problem, z, deviations, options, rng):
         np.append(found.x[0], found.clocks[0, group]), information(A, kept, robust), P, cost,
         found.arrived[0], second_x, second_cost, np.where(there, weights, np.nan), scale,
     )  # fmt: skip
-
-
-def white_roots(correlation, there):
-    """Return matrices (N, K, K) that make the errors of each sensor white in time.
-
-    `correlation` is a function of the lag in samples, zero beyond; what is not `there` (K, N) is
-    left out. With the correlations C = L L' they are L^-1.
-    """
-    samples, sensors = there.shape
-    lag = np.abs(np.subtract.outer(np.arange(samples), np.arange(samples)))
-    C = np.where(lag < len(correlation), correlation[np.minimum(lag, len(correlation) - 1)], 0.0)
-    roots = np.zeros((sensors, samples, samples))
-    for root, some in zip(roots, there.T, strict=True):
-        rows = np.flatnonzero(some)
-        L = np.linalg.cholesky(C[np.ix_(rows, rows)])
-        root[np.ix_(rows, rows)] = np.linalg.inv(L)
-    return roots
 
 
 def _best(found: Refined):

@@ -12,11 +12,12 @@ from .._typing import ArrayLike
 from ..model.information import inverse_information
 from ..model.links import DopplerLinks, sample_times, state_size
 from ..model.radar_array import RadarArray
-from ._ml_fit import Options, fit_run, white_roots
+from ._ml_fit import Options, fit_run
 from ._ml_links import links_problem
 from ._ml_problem import Found, array_problem
 from .extended_kalman import _measurements
 from .initial_estimate import InitialEstimate
+from .whitening import whitening_matrices
 
 
 @checked
@@ -153,7 +154,11 @@ def ml_initialize(
     else:
         problem = links_problem(array.sampled(samples, T), lower, upper, times, moving)
         values = samples * sensors
-    correlation = _correlation(correlation, samples, problem.epoch)
+    if correlation is not None:
+        if problem.epoch:
+            raise ValueError("correlation must be None for clocks that are others at each sample")
+        correlation = _checks.one_row("correlation", correlation)
+        whitening_matrices(correlation, np.ones((samples, 1), bool))  # or raise
     needed = problem.unknowns(np.ones(samples * sensors, bool))
     if values < needed:
         raise ValueError(
@@ -230,25 +235,6 @@ def _each_run(problem, z, deviations, options, n, rng):
         if own is not None:
             own[i] = fit.P
     return found, own, weights, scales
-
-
-def _correlation(correlation, samples, epoch):
-    """Return the correlation as a function of the lag, as long as it is not zero, or None."""
-    if correlation is None:
-        return None
-    if epoch:
-        raise ValueError("correlation must be None for clocks that are others at each sample")
-    correlation = _checks.one_row("correlation", correlation)[:samples]
-    if correlation[0] != 1:
-        raise ValueError(f"correlation must begin with 1, at lag zero, got {correlation[0]}")
-    try:
-        white_roots(correlation, np.ones((samples, 1), bool))
-    except np.linalg.LinAlgError:
-        raise ValueError(
-            f"correlation must be that of some errors, a positive definite matrix of {samples} "
-            f"samples, got {correlation.tolist()}"
-        ) from None
-    return correlation
 
 
 def _box(box):

@@ -317,3 +317,28 @@ def test_what_makes_no_sense_is_refused_by_name(room):
     line = replace(iq, array=two, x=iq.x[:2], valid=iq.valid[:2])
     with pytest.raises(ValueError, match="start must hold windows side by side for 6 unknowns"):
         track_iq(line, ([0, 0, 0], [6, 5, 3]), **SETTINGS | {"start": 0.12})
+
+
+def test_all_windows_make_a_better_start_whose_covariance_is_right():
+    """Eight straight flights; normalized errors of four components by chi-square, 1e-6 each way.
+
+    The docstring says a quarter of the errors, a sixteenth in squares. A ratio of 16 squares each
+    is four times as large as it should be with a probability of 4e-3 if both are independent.
+    """
+    array = RadarArray(PLACES, 299_792_458 / CARRIER)
+    square, total = dict.fromkeys(("side by side", "all"), 0.0), 0.0
+    for rng in np.random.default_rng(102).spawn(8):
+        x = np.r_[4.8, 1.5, 1.2, rng.uniform(-1.2, -0.6), rng.uniform(-0.3, 0.3), 0]
+        path = x[:3] + np.arange(600)[:, None] / 1e3 * x[3:]
+        iq = Baseband(iq_from_geometry(path, array, 20, rng=rng), 1e3, array)
+        for how in square:
+            f = track_iq(
+                iq, BOX, **SETTINGS, hop=0.0125, remove_dc=False, balance=False, start_windows=how
+            )
+            i, t = np.argmin(f.score[:, 0]), f.time[f.used - 1]
+            error = (f.x[i, 0] - x - t * np.r_[x[3:], 0, 0, 0])[[0, 1, 3, 4]]
+            square[how] += np.sum(error[:2] ** 2)
+        total += error @ np.linalg.solve(f.P[i, 0][np.ix_([0, 1, 3, 4], [0, 1, 3, 4])], error)
+    assert square["all"] < 0.25 * square["side by side"]
+    low, high = chi2.ppf([1e-6, 1 - 1e-6], 32)
+    assert low < total < high
