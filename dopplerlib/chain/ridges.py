@@ -15,6 +15,8 @@ from ..tracking.management import TrackManager
 from ..tracking.multi_target import track_scans
 
 _LOST = 4.0  # bins: a target that may be further off from where it is expected is lost
+_FADING = 5.6  # dB: deviation of the power of an echo of many parts, which is exponential
+_SWELL = 20.0  # dB: how much the mean power of an echo wanders in a second
 _NEAR = 2.0  # bins: nearer tones are one peak
 
 
@@ -136,11 +138,13 @@ def follow_ridges(
 
     Notes
     -----
-    `track_scans` with the state [f, df/dt]: its rate of change is driven by white noise of density
-    ``chirp_walk^2 + turn_rate (df/dt)^2``, since the curve of a passing body bends where it is
-    steep and hardly elsewhere. The noise of a detection is half a bin, and what the frequency
-    changes in a quarter of a window. A ridge without a detection coasts; when its deviation
-    exceeds four bins it ends, and what is found after that is another ridge.
+    `track_scans` with a state of frequency f, its rate of change, and the level of the echo in dB.
+    The rate is driven by white noise of density ``chirp_walk^2 + turn_rate (df/dt)^2``, since the
+    curve of a passing body bends where it is steep and hardly elsewhere. The noise of a frequency
+    is half a bin, and what it changes in a quarter of a window. The level fades by 5.6 dB, as the
+    power of an echo of many parts does, and wanders by 20 dB in a second: so a loud vehicle and a
+    faint one are told from one another where they cross. A ridge without a detection coasts; when
+    its deviation exceeds four bins it ends, and what is found after that is another ridge.
 
     Two ridges within two bins, or the `extent` of a target, are one peak. If they separate again
     each goes on as before: their targets crossed. If one ends there, they were one target, and the
@@ -168,42 +172,44 @@ def follow_ridges(
     rows = found.frequency.reshape(-1, *found.frequency.shape[-2:])
     if run >= len(rows):
         raise ValueError(f"run must be less than the {len(rows)} records of found, got {run}")
-    frequency, bound = (
-        v.reshape(-1, *v.shape[-2:])[run] for v in (found.frequency, found.frequency_std)
+    frequency, bound, snr = (
+        v.reshape(-1, *v.shape[-2:])[run] for v in (found.frequency, found.frequency_std, found.snr)
     )
     n, T = found.window, found.hop / found.fs
     resolution, length = found.fs / n, n / found.fs
     side_by_side = -(-n // found.hop)
     if manager is None:
         manager = TrackManager(2 * side_by_side, 4 * side_by_side, 64 * side_by_side)
-    unit = cwna_process_noise(T, 1.0, dim=1)
+    F, unit = np.eye(3), np.zeros((3, 3))
+    F[:2, :2], unit[:2, :2] = ncv_transition(T, dim=1), cwna_process_noise(T, 1.0, dim=1)
+    swell = np.diag([0.0, 0.0, _SWELL**2 * T])
 
     def slope(x):
         return np.clip(x[..., 1, None, None], -chirp, chirp)
 
     def Q(x):
-        return (chirp_walk**2 + turn_rate * slope(x) ** 2) * unit
+        return (chirp_walk**2 + turn_rate * slope(x) ** 2) * unit + swell
 
     def R(x):
-        return (resolution / 2) ** 2 + (slope(x) * length / 4) ** 2
+        off = (resolution / 2) ** 2 + (slope(x) * length / 4) ** 2
+        return off * np.diag([1.0, 0.0]) + np.diag([0.0, _FADING**2])
 
     def h(x):
-        return x[..., :1] if found.signed else np.abs(x[..., :1])
+        return np.stack([x[..., 0] if found.signed else np.abs(x[..., 0]), x[..., 2]], axis=-1)
 
     def H(x):
-        J = np.zeros((*x.shape[:-1], 1, 2))
+        J = np.zeros((*x.shape[:-1], 2, 3))
         J[..., 0, 0] = 1.0 if found.signed else np.where(x[..., 0] < 0, -1.0, 1.0)
+        J[..., 1, 2] = 1.0
         return J
 
     def start(z):
-        x = np.stack([z[:, 0], np.zeros(len(z))], axis=-1)
-        P = np.diag([(resolution / 2) ** 2, chirp**2])
-        return x, np.broadcast_to(P, (len(z), 2, 2))
+        x = np.stack([z[:, 0], np.zeros(len(z)), z[:, 1]], axis=-1)
+        P = np.diag([(resolution / 2) ** 2, chirp**2, _FADING**2])
+        return x, np.broadcast_to(P, (len(z), 3, 3))
 
-    tracks = track_scans(
-        frequency[:, :, None], ncv_transition(T, dim=1), Q, h, H, R, start, manager,
-        gate_probability, exclusive=True,
-    )  # fmt: skip
+    scans = np.stack([frequency, 10 * np.log10(snr)], axis=-1)
+    tracks = track_scans(scans, F, Q, h, H, R, start, manager, gate_probability, exclusive=True)
     parts = [
         part
         for track in tracks

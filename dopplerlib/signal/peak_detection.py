@@ -67,6 +67,7 @@ def detect_peaks(
     extent : float
         Width in Hz of the echo of one target, whose parts move at different speeds. Tones nearer
         than that to a stronger one are taken for parts of it, and reference cells stay as far away.
+        It keeps the ridge of one vehicle whole; where several cross, 0 keeps them apart.
     most : int
         Largest number P of tones in a window.
     taper : {"hann", "rectangular"}
