@@ -1,5 +1,6 @@
 """Baseband samples of an array, after low-pass filter and decimation."""
 
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -41,6 +42,8 @@ class Baseband:
     valid : ndarray of bool, shape (..., N, n), optional
         Which samples are measurements, and finite, as decided before the low-pass: see
         `valid_samples` and `lowpass_decimate`. If None, the samples in `x` tell it.
+    without_q : bool
+        Whether the modules have no Q, see `Recording`.
 
     Examples
     --------
@@ -57,6 +60,7 @@ class Baseband:
     first: Real = 0.0
     noise_gain: Positive = 1.0
     valid: Booleans | None = None
+    without_q: bool = False
 
     def __post_init__(self):
         """Check the fields."""
@@ -168,9 +172,10 @@ class Baseband:
                 f"array must have the wavelength {recording.wavelength:.6g} m of recording, "
                 f"got {array.wavelength:.6g} m"
             )
-        return cls.from_samples(
+        iq = cls.from_samples(
             recording.x, recording.fs, array, factor=factor, taps=taps, valid=recording.valid
         )
+        return replace(iq, without_q=recording.without_q)
 
     def samples(self) -> tuple[ComplexArray, BoolArray]:
         """Return the samples, with zeros in place of invalid ones, and the mask.

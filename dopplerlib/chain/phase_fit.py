@@ -41,8 +41,8 @@ def fit_phases(
     Raises
     ------
     ValueError
-        If a shape does not fit, a value is not finite, there are less than three samples, or the
-        states are so far off that the steps do not stay finite.
+        If modules have no Q, a shape does not fit, a value is not finite, there are less than three
+        samples, or the states are so far off that the steps do not stay finite.
 
     Notes
     -----
@@ -59,6 +59,8 @@ def fit_phases(
     >>> fit_phases(iq, [[0.73, 0.09, 0.1, -0.7, -0.1, 0.0]], 0.1).shape
     (1, 6)
     """
+    if iq.without_q:
+        raise ValueError("iq must be samples of modules with a Q, got modules without one")
     if iq.x.ndim != 3 or len(iq.x) != len(x):
         raise ValueError(f"x must have a state for each run of iq, got {len(x)} and {iq.x.shape}")
     x = x.copy()

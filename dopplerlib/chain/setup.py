@@ -13,6 +13,7 @@ from .._hints import AboveZero, Count, Positive, Real, checked, exactly
 from .._records import record
 from .._typing import ArrayLike, FileSource, FloatArray
 from ..model.radar_array import RadarArray
+from ..signal.real_tone import ml_frequency_real
 from ..signal.recording import Recording, read_npy, read_sigmf, read_wav
 from ._box import bounds
 from .baseband import Baseband
@@ -280,6 +281,8 @@ class Setup:
     def track(self, iq: Baseband) -> IqTrack:
         """Detect and track a target with these settings.
 
+        For modules without Q, the signs of Doppler shifts are those of straight flight.
+
         Parameters
         ----------
         iq : Baseband
@@ -322,7 +325,10 @@ class Setup:
             "lines",
             "line_width",
         ]
-        return track_iq(iq, **{name: getattr(self, name) for name in names})
+        settings = {name: getattr(self, name) for name in names}
+        if iq.without_q:
+            settings |= {"estimator": ml_frequency_real, "signs": "straight"}
+        return track_iq(iq, **settings)
 
 
 def example() -> Setup:

@@ -298,8 +298,8 @@ def track_iq(
     line_width : float
         Shifts nearer than that to a line are missing, in Hz.
     estimator : callable
-        Frequency estimator of a window, see `sliding_doppler`. For modules without Q, whose samples
-        are analytic signals, `ml_frequency_real`.
+        Frequency estimator of a window, see `sliding_doppler`. For modules without Q it has to be
+        `ml_frequency_real` or `ml_frequency_real_dc`.
     signs : {"straight"} or array_like of int, broadcast to (K, N), optional
         Signs of Doppler shifts that such modules do not tell: 1 where the target approaches, -1
         where it recedes, 0 for a shift that is to be missing; or "straight", which takes them from
@@ -394,7 +394,7 @@ def track_iq(
         x = correct_iq_imbalance(x, valid)
     leading = x.shape[:-2]
     x, valid = (v.reshape(-1, *v.shape[-2:]) for v in (x, valid))
-    real = _without_q(estimator, signs)
+    real = _without_q(iq, estimator, signs)
     band = (0.0 if real else -top, top)
     d = sliding_doppler(x, iq.fs, n, step, estimator, band=band, valid=valid)
     time = iq.first + d.time - iq.delay
@@ -468,9 +468,14 @@ def _warn_unless_plausible(costs, degrees):
         )
 
 
-def _without_q(estimator, signs):
+def _without_q(iq, estimator, signs):
     """Return whether an estimator is for modules without Q, and raise unless signs suit it."""
     real = estimator in (ml_frequency_real, ml_frequency_real_dc)
+    if iq.without_q and not real:
+        raise ValueError(
+            "estimator must be ml_frequency_real or ml_frequency_real_dc for modules without Q, "
+            f"got {getattr(estimator, '__name__', estimator)}"
+        )
     if real and signs is None:
         raise ValueError(
             "signs must be given with an estimator for modules without Q, which do not tell them: "

@@ -58,7 +58,7 @@ def align(recordings: Iterable[Recording], delays: ArrayLike | None = None) -> R
     ValueError
         If `recordings` is no sequence of recordings, if their sampling rates or carriers differ,
         if they have no time in common, or if their lengths differ and nothing tells their start;
-        or if `delays` are not as many finite numbers.
+        if `delays` are not as many finite numbers; or if some modules have a Q and others do not.
 
     Notes
     -----
@@ -79,6 +79,8 @@ def align(recordings: Iterable[Recording], delays: ArrayLike | None = None) -> R
     given = list(recordings) if isinstance(recordings, Iterable) else []
     if not given or not all(isinstance(one, Recording) for one in given):
         raise ValueError(f"recordings must be a sequence of recordings, got {recordings!r:.80}")
+    if len({r.without_q for r in given}) > 1:
+        raise ValueError("recordings must all have a Q, or none of them, got both")
     starts = [r.start for r in given]
     if delays is not None:
         delays = _checks.exact_shape("delays", _checks.finite("delays", delays), (len(given),))
@@ -94,7 +96,7 @@ def align(recordings: Iterable[Recording], delays: ArrayLike | None = None) -> R
     parts = [slice(first, first + count) for first in firsts]
     x = np.concatenate([r.x[:, part] for r, part in zip(given, parts, strict=True)])
     valid = np.concatenate([r.valid[:, part] for r, part in zip(given, parts, strict=True)])
-    return Recording(x, sources[0].fs, sources[0].carrier, start, valid)
+    return Recording(x, sources[0].fs, sources[0].carrier, start, valid, given[0].without_q)
 
 
 def existing(paths, found=lambda path: path):
@@ -205,7 +207,7 @@ def join(sources, layout, first, count):
             f"{sources[0].name} must fit into memory, got {count} samples of {sum(sensors)} "
             f"sensors, several times {size:.3g} GiB: read a part with first and count"
         ) from None
-    return Recording(x, sources[0].fs, sources[0].carrier, start, valid)
+    return Recording(x, sources[0].fs, sources[0].carrier, start, valid, kind == "real")
 
 
 def _fill(rows, source, first, kind):

@@ -42,7 +42,8 @@ def read_npy(
     -------
     Recording
         Whole numbers are scaled to -1 ... 1 by the range of their type. With ``layout="real"`` the
-        analytic signal, whose Doppler shifts are positive: the sign is not known.
+        analytic signal, and `without_q` is set: `ml_frequency_real` estimates Doppler shifts, whose
+        sign is not known.
 
     Raises
     ------

@@ -27,6 +27,9 @@ class Recording:
         Time of the first sample, with a time zone; what is read is in UTC.
     valid : ndarray of bool, shape (S, n), optional
         False where there is no measurement. If None, `valid_samples` tells it by the samples.
+    without_q : bool
+        Whether the modules have no Q: samples are their analytic signals then, whose real parts
+        they measured, and the sign of a Doppler shift is not known. See `ml_frequency_real`.
 
     Raises
     ------
@@ -55,6 +58,7 @@ class Recording:
     carrier: float
     start: datetime | None = None
     valid: np.ndarray | None = None
+    without_q: bool = False
 
     def __post_init__(self):
         x = _checks.numbers("x", self.x)
@@ -82,7 +86,8 @@ class Recording:
         fs = _checks.one_number("fs", self.fs, _checks.deviation)
         carrier = _checks.one_number("carrier", self.carrier, _checks.deviation)
         x = x.astype(complex, copy=False)
-        return {"x": x, "fs": fs, "carrier": carrier, "valid": valid}
+        without_q = _checks.one_boolean("without_q", self.without_q)
+        return {"x": x, "fs": fs, "carrier": carrier, "valid": valid, "without_q": without_q}
 
     @property
     def time(self) -> FloatArray:

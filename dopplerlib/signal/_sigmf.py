@@ -136,7 +136,8 @@ def read_sigmf(
     -------
     Recording
         Samples that are stored as whole numbers are scaled to -1 ... 1. With ``layout="real"`` the
-        analytic signal, whose Doppler shifts are positive: the sign is not known.
+        analytic signal, and `without_q` is set: `ml_frequency_real` estimates Doppler shifts, whose
+        sign is not known.
 
     Raises
     ------

@@ -3,6 +3,8 @@
 Seeds were written down once and are not chosen.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import chi2
@@ -53,5 +55,7 @@ def test_without_noise_and_faults_it_finds_the_truth_and_stays_there():
 def test_what_makes_no_sense_is_refused_by_name(iq):
     with pytest.raises(ValueError, match="time must leave room for three samples"):
         fit_phases(iq, np.tile(truth(0.0), (RUNS, 1)), 0.0)
+    with pytest.raises(ValueError, match="iq must be samples of modules with a Q"):
+        fit_phases(replace(iq, without_q=True), np.tile(truth(0.5), (RUNS, 1)), 0.5)
     with pytest.raises(ValueError, match="x must have shape"):
         fit_phases(iq, truth(0.5), 0.5)

@@ -4,8 +4,9 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from scipy.io import wavfile
 
-from dopplerlib import RadarArray
+from dopplerlib import RadarArray, iq_from_geometry
 from dopplerlib.chain.setup import EXAMPLE, Setup, example
 from dopplerlib.signal.recording import Recording, write_sigmf, write_wav
 
@@ -136,3 +137,18 @@ def test_a_delay_before_the_converter_is_added():
     recording = Recording(x, 4000.0, setup.carrier)
     late = Setup(**{f.name: getattr(setup, f.name) for f in fields(Setup)} | {"delay": 0.25})
     assert late.baseband(recording).delay == setup.baseband(recording).delay + 0.25
+
+
+def test_real_channels_of_a_file_are_tracked_with_the_signs_of_straight_flight(tmp_path):
+    """A WAV file of five modules without Q: a centimeter is more than five deviations."""
+    places = [[0, 0, 2], [6, 0, 2.2], [6, 5, 2], [0, 5, 2.2], [3, 0, 1.8]]
+    array = RadarArray(places, wavelength=0.0125)
+    path = [1.5, 2.5, 1] + np.arange(2000)[:, None] / 1e3 * [1, 0.3, 0]
+    x = iq_from_geometry(path, array, 20, rng=np.random.default_rng(1)).real
+    wavfile.write(tmp_path / "room.wav", 1000, (0.2 * x.T).astype(np.float32))
+    box = [0, 0, 1], [6, 5, 1]
+    setup = Setup(array, box, 2, 0.05, 0.05, 0.7, layout="real", noise="horizontal")
+    found = setup.track(setup.baseband(setup.read(tmp_path / "room.wav")))
+    state, P, _ = found.at(1.999)
+    assert np.linalg.norm(state[:3] - path[-1]) < 0.01
+    assert 5 * np.sqrt(np.trace(P[:3, :3])) < 0.01

@@ -157,7 +157,7 @@ def crossing(run):
     start = np.array([1.5, 2.5, 1]) + np.append(rng.uniform(-0.4, 0.4, 2), 0)
     path = start + np.arange(2000)[:, None] / 1e3 * velocity
     x = hilbert(iq_from_geometry(path, array, 20, rng=rng).real)
-    return Baseband(x, 1e3, array), np.append(path[-1], velocity)
+    return Baseband(x, 1e3, array, without_q=True), np.append(path[-1], velocity)
 
 
 ACROSS = {
@@ -195,8 +195,11 @@ def test_signs_can_be_given_and_must_be_where_nothing_tells_them():
     ]:
         with pytest.raises(ValueError, match=f"^{message}"):
             track_iq(iq, **ACROSS, signs=signs)
+    usual = {**ACROSS, "estimator": ml_frequency}
+    with pytest.raises(ValueError, match=r"estimator must be ml_frequency_real .* got ml_f"):
+        track_iq(iq, **usual)
     with pytest.raises(ValueError, match="signs must be None, since this estimator finds them"):
-        track_iq(iq, **{**ACROSS, "estimator": ml_frequency}, signs="straight")
+        track_iq(replace(iq, without_q=False), **usual, signs="straight")
 
 
 def test_leading_axes_are_those_of_the_samples(room):

@@ -5,8 +5,17 @@ import pytest
 from scipy.io import wavfile
 from scipy.signal import hilbert
 
+from dopplerlib import RadarArray
+from dopplerlib.chain.baseband import Baseband
 from dopplerlib.chain.simulation import simulate_baseband
-from dopplerlib.signal.recording import Recording, read_sigmf, read_wav, write_sigmf, write_wav
+from dopplerlib.signal.recording import (
+    Recording,
+    align,
+    read_sigmf,
+    read_wav,
+    write_sigmf,
+    write_wav,
+)
 from dopplerlib.systems import mittermaier2016
 
 FS, CARRIER = 2000.0, 24e9
@@ -118,6 +127,11 @@ def test_real_channels_become_analytic_signals(tmp_path, sensors):
     wavfile.write(tmp_path / "a.wav", int(FS), x.T)
     recording = read_wav(tmp_path / "a.wav", CARRIER, layout="real")
     np.testing.assert_allclose(recording.x, hilbert(x), rtol=0, atol=1e-10)
+    assert recording.without_q and align([recording]).without_q
+    array = RadarArray(np.arange(3 * sensors).reshape(-1, 3), recording.wavelength)
+    assert Baseband.from_recording(recording, array).without_q
+    with pytest.raises(ValueError, match="recordings must all have a Q, or none of them"):
+        align([recording, Recording(x + 0j, FS, CARRIER)])
     assert not recording.valid[0, 500:600].any()
     assert recording.valid[:, :490].all() and recording.valid[:, 610:].all()
 
