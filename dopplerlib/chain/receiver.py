@@ -35,7 +35,9 @@ class ReceiverFix:
         Frequency offset of the receiver's clock at each epoch in Hz; NaN without measurements.
     z, residual, sigma_f : ndarray, shape (K, S)
         Measurements, what is left of them, and their standard deviations in Hz. NaN where there is
-        none, or where it was rejected as wrong.
+        none, or where it was left out.
+    wrong : ndarray of bool, shape (K, S)
+        Measurements that were left out as wrong. Whole epochs of them say that the receiver moved.
     level : float
         Standard deviation in Hz at 45 dB-Hz.
     offset_std : float
@@ -57,6 +59,7 @@ class ReceiverFix:
     z: np.ndarray
     residual: np.ndarray
     sigma_f: np.ndarray
+    wrong: np.ndarray
     level: float
     offset_std: float
     offset: np.ndarray
@@ -129,6 +132,7 @@ def locate_receiver(
     place = _checks.exact_shape("start", _checks.moderate("start", start, (3,)), (3,)).copy()
     scale = relative_deviation(recording.cn0)
     steps, near, converged = [place], False, False
+    wrong = np.zeros(scale.shape, bool)
     for _ in range(_ROUNDS):
         z, links = satellite_links(recording, place, mask if near else None)
         here = np.r_[place, np.zeros(links.n - 3)]
@@ -137,7 +141,8 @@ def locate_receiver(
         sigma = np.where(np.isnan(z), np.nan, scale)
         if near:
             left = least_absolute(r, H, sigma)
-            sigma[np.abs(left) > GATE * sigma * (level or typical(left / sigma, 3))] = np.nan
+            wrong = np.abs(left) > GATE * sigma * (level or typical(left / sigma, 3))
+            sigma[wrong] = np.nan
         found = solve(r, H, sigma, level)
         place = place + found["step"]
         steps.append(place)
@@ -148,7 +153,13 @@ def locate_receiver(
         near = near or bool(length < _NEAR)
     z = np.where(np.isnan(sigma), np.nan, z)
     return ReceiverFix(
-        position=place, z=z, links=links, steps=np.array(steps), converged=converged, **found
+        position=place,
+        z=z,
+        wrong=wrong,
+        links=links,
+        steps=np.array(steps),
+        converged=converged,
+        **found,
     )
 
 
@@ -171,7 +182,7 @@ def window_fixes(
     Returns
     -------
     x : ndarray, shape (W, 3)
-        Places in m, or velocities in m/s.
+        Places in m, or velocities in m/s; NaN where a part has too few satellites.
     P : ndarray, shape (W, 3, 3)
         Covariances.
 
@@ -199,7 +210,6 @@ def window_fixes(
     H = H[: parts * epochs].reshape(*shape, 3)
     weighted = (H * w[..., None]).mT
     P, regular = inverse_information(weighted @ H)
-    if not regular.all():
-        raise ValueError("fix must have satellites enough in each part, got too few")
+    P = np.where(regular[:, None, None], P, np.nan)
     x = (P @ (weighted @ r[..., None]))[..., 0]
     return x + (fix.position if unknown == "position" else 0), P

@@ -86,6 +86,10 @@ def satellite_links(
     sent = _dot(u, x[..., 3:] + _carried(x)) / speed_of_light
     heard = _dot(u, _carried(place)) / speed_of_light
     bias = L1 * (np.log1p(rate) + (sent**2 - heard**2) / 2)
+    if np.isnan(recording.doppler).all():
+        raise ValueError(
+            "recording must have Doppler shifts, got none: take those of its `counted`"
+        )
     z = L1 * np.log1p(recording.doppler / L1)
     if mask is not None:
         sine = -_dot(u, east_north_up(place)[2])

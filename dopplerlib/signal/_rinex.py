@@ -34,9 +34,11 @@ def observed(name, path):
     kinds, read = (_kinds_2, _epochs_2) if version < 3 else (_kinds_3, _epochs_3)
     with _readable(name, path):
         kinds = kinds(header)
-        signal = next((s for s in _SIGNALS if "D" + s in kinds), None)
-        if signal is None:
-            raise _Refused(f"hold Doppler shifts of GPS on L1, got {' '.join(kinds) or 'none'}")
+        signals = [s for kind in "DL" for s in _SIGNALS if kind + s in kinds]
+        if not signals:
+            got = " ".join(kinds) or "none"
+            raise _Refused(f"hold Doppler shifts or phases of GPS on L1, got {got}")
+        signal = signals[0]
         columns = [kinds.index(k + signal) if k + signal in kinds else None for k in "DSCL"]
         epochs = [epoch for epoch in read(lines, len(kinds)) if epoch[1]]
         satellites = sorted({satellite for _, row in epochs for satellite in row})
@@ -208,8 +210,8 @@ def _opened(name, path, kind):
         raise ValueError(f"{name} must be {wanted} file in RINEX, got {str(path)!r}")
     with _readable(name, path):
         version = _number(first[:9])
-        if not 2.1 <= version < 5:
-            raise _Refused(f"have RINEX version 2.1 to 4, got {version}")
+        if not 2 <= version < 5:
+            raise _Refused(f"have RINEX version 2 to 4, got {version}")
         ends = [i for i, line in enumerate(lines) if line[60:].strip() == "END OF HEADER"]
         if not ends:
             raise _Refused("have a header that ends, got none")

@@ -47,7 +47,7 @@ class SatelliteShifts:
     ------
     ValueError
         If the shapes do not suit each other, a satellite occurs twice, the times do not increase,
-        or there is no shift at all.
+        or there are neither shifts nor counts.
     """
 
     satellites: tuple[str, ...]
@@ -73,8 +73,8 @@ class SatelliteShifts:
         for name in _COLUMNS:
             values = _checks.measured(name, getattr(self, name), shape)
             fields[name] = _checks.exact_shape(name, values, shape)
-        if np.isnan(fields["doppler"]).all():
-            raise ValueError("doppler must hold a shift, got none")
+        if np.isnan(fields["doppler"]).all() and np.isnan(fields["count"]).all():
+            raise ValueError("doppler must hold a shift if there is no count, got none")
         _checks.instance("orbits", self.orbits, BroadcastOrbits)
         position = _checks.measured("position", self.position, (3,))
         return fields | {"position": _checks.exact_shape("position", position, (3,))}
@@ -93,6 +93,8 @@ class SatelliteShifts:
         >>> len(recorded_receiver("novatel")[0].part(10, 5).times)
         5
         """
+        if first >= len(self.times):
+            raise ValueError(f"first must be below {len(self.times)}, the epochs, got {first}")
         rows = slice(first, first + count)
         return replace(self, **{name: getattr(self, name)[rows] for name in ("times", *_COLUMNS)})
 
@@ -129,7 +131,8 @@ class SatelliteShifts:
         -------
         SatelliteShifts
             Each epoch is in the middle of a part; parts follow on. Where the receiver lost count
-            there is no shift.
+            there is no shift. The mean is that in the middle to 0.1 mm/s in parts of 10 s, and to
+            a hundred times that in parts of 100 s.
 
         Examples
         --------
@@ -164,8 +167,9 @@ def read_rinex(
     Parameters
     ----------
     observations : path-like
-        RINEX observation file of version 2.1, 3 or 4, as plain text. Of GPS the signal on L1 is
-        read, the one with the code C/A if there are several; other systems are left out.
+        RINEX observation file of version 2, 3 or 4, as plain text. Of GPS the signal on L1 is
+        read, the one with the code C/A if there are several; other systems are left out. Of a
+        file with phases alone take `SatelliteShifts.counted`.
     navigation : path-like
         RINEX navigation file of the same hours. Elements that a satellite marks as unhealthy are
         left out.
@@ -179,8 +183,8 @@ def read_rinex(
     ------
     ValueError
         If a file cannot be read, is no RINEX file of its kind and of these versions, is compressed
-        or cut off, has another time than that of GPS; or if it holds no Doppler shifts, or no
-        elements, of GPS satellites.
+        or cut off, has another time than that of GPS; or if it holds neither Doppler shifts nor
+        phases, or no elements, of GPS satellites.
 
     Notes
     -----

@@ -99,6 +99,10 @@ def test_the_fix_of_a_window_is_that_of_its_epochs_alone(fixes):
     np.testing.assert_allclose(x[2], alone.position, rtol=0, atol=50)
     with pytest.raises(ValueError, match="epochs must be at most the 237 of the fix, got 238"):
         window_fixes(fix, 238)
+    sigma_f = fix.sigma_f.copy()
+    sigma_f[6:9, 2:] = np.nan
+    gone, P = window_fixes(replace(fix, sigma_f=sigma_f), 3)
+    assert np.isnan(gone[2]).all() and np.isnan(P[2]).all() and np.isfinite(gone[3]).all()
 
 
 def test_the_velocity_of_a_receiver_at_rest_is_zero_as_claimed(fixes):
@@ -143,7 +147,7 @@ def test_wrong_shifts_are_left_out():
     doppler[:, 3] += 50.0
     wrong[:, 3] = True
     fix = locate_receiver(replace(recording, doppler=doppler))
-    assert (np.isnan(fix.z) == wrong).all()
+    assert (fix.wrong == wrong).all() and (np.isnan(fix.z) == wrong).all()
     d = fix.position - place
     assert d @ np.linalg.solve(fix.P, d) < stats.chi2.isf(1e-3, 3)
 
@@ -194,4 +198,6 @@ def test_too_few_measurements_are_refused(fixes):
         locate_receiver(few, place)
     with pytest.raises(ValueError, match="are the signs and the day right"):
         locate_receiver(replace(recording, doppler=-recording.doppler))
+    with pytest.raises(ValueError, match="recording must have Doppler shifts, got none"):
+        locate_receiver(replace(recording, doppler=np.full_like(recording.doppler, np.nan)))
     assert fix.state.shape == (7,)

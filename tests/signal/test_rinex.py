@@ -101,6 +101,12 @@ def test_events_and_other_systems_are_skipped(pair):
     assert read_rinex(*pair(change)) == recorded_receiver("novatel")[0]
 
 
+def test_phases_alone_are_read(pair):
+    recording = read_rinex(*pair(lambda text: text.replace("L1C D1C S1C", "L1C D2W S1C")))
+    assert np.isnan(recording.doppler).all()
+    np.testing.assert_array_equal(recording.count, recorded_receiver("novatel")[0].count)
+
+
 def test_unhealthy_satellites_and_unknown_places_are_left_out(pair):
     def sick(text):
         """The second number of the seventh line of a record is the health."""
@@ -122,12 +128,11 @@ def test_unhealthy_satellites_and_unknown_places_are_left_out(pair):
     [
         (lambda text: "", "observations must be an observation file in RINEX"),
         (lambda text: text.replace("OBSERVATION", "NAVIGATION "), "be an observation file"),
-        (lambda text: text.replace("     3.02", "     1.00"), "have RINEX version 2.1 to 4"),
+        (lambda text: text.replace("     3.02", "     1.00"), "have RINEX version 2 to 4"),
         (lambda text: "\x1f\x8b" + text, "be plain text"),
         (lambda text: text.replace("END OF HEADER", "END OF"), "have a header that ends"),
         (lambda text: text.replace(" GPS         TIME", " GLO         TIME"), "have GPS time"),
-        (lambda text: text.replace("L1C D1C S1C", "L1C D2W S1C"), "hold Doppler shifts of GPS"),
-        (lambda text: text.replace("L1C D1C S1C", "L1C S1C    "), "hold Doppler shifts of GPS"),
+        (lambda text: text.replace("L1C D1C S1C", "L5X D2W S1C"), "phases of GPS on L1, got"),
         (lambda text: text.replace("-1140.227", "-11x0.227"), "have the columns of RINEX"),
         (lambda text: text.replace("> 2009", "  2009"), "begin an epoch with '>'"),
         (lambda text: text[:-100], "be complete"),
@@ -151,13 +156,35 @@ def test_what_is_no_navigation_file_is_refused(pair):
             read_rinex(observations, path)
 
 
+def test_parts_of_a_recording_are_its_rows_and_columns():
+    """The mean shift over five seconds is the cycles at both ends over five."""
+    whole, _ = recorded_receiver("novatel")
+    part = whole.part(40, 10)
+    np.testing.assert_array_equal(part.times, whole.times[40:])
+    np.testing.assert_array_equal(part.doppler, whole.doppler[40:])
+    fewer = whole.without(["G03", "G22"])
+    assert fewer.satellites == whole.satellites[1:-1]
+    np.testing.assert_array_equal(fewer.cn0, whole.cn0[:, 1:-1])
+    counted = whole.counted(5)
+    np.testing.assert_array_equal(counted.times, whole.times[0] + 2.5 + 5 * np.arange(9))
+    cycles = 106224932.512 - 106230637.852  # of G03, read off the file at 0 and 5 s
+    assert counted.doppler[0, 0] == pytest.approx(cycles / 5, abs=1e-6)
+    for call, message in (
+        (lambda: whole.part(46, 1), "first must be below 46"),
+        (lambda: whole.counted(46), "epochs must be at most 45"),
+        (lambda: whole.without(["G01"]), "satellites must be a collection|satellites must be one"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            call()
+
+
 def test_a_recording_is_checked():
     good, _ = recorded_receiver("novatel")
     fields = {name: getattr(good, name) for name in SatelliteShifts.__annotations__}
     for change, message in (
         ({"times": good.times[::-1]}, "times must increase"),
         ({"satellites": ("G01",) * 9}, "satellites must differ"),
-        ({"doppler": np.full_like(good.doppler, np.nan)}, "doppler must hold a shift"),
+        (dict.fromkeys(("doppler", "count"), np.full((46, 9), np.nan)), "doppler must hold a s"),
         ({"cn0": good.cn0[1:]}, "cn0 must have shape"),
         ({"orbits": None}, "orbits must be a BroadcastOrbits"),
         ({"position": [0.0]}, "position must have shape"),
