@@ -74,6 +74,8 @@ def remove_lines(
     samples tell nothing of the line. An echo that stays within twice the width for seconds takes
     its part: its shifts have up to twice the variance then that `sliding_doppler` states.
 
+    Memory grows with samples times lines, some 500 bytes for each: decimate first.
+
     Examples
     --------
     A hum, half as strong as an echo that crosses it, goes by 40 dB:

@@ -117,16 +117,17 @@ def test_hum_and_a_drift_go_and_deviations_stay_right(room):
     """A third of an echo at 50 and 100 Hz, among the shifts, and a constant that doubles.
 
     Normalized errors as in the test above; the mean NIS, of as many shifts as there are, is within
-    4 % of its law in 10 runs.
+    5 % of its law in 6 runs.
     """
     rng = np.random.default_rng(7)
     raw, cured, total = [], [], 0.0
-    for iq, _, truth in room[:10]:
+    for run, (iq, _, truth) in enumerate(room[:6]):
         t = iq.first + np.arange(iq.x.shape[-1]) / iq.fs
         a, b = np.exp(2j * np.pi * rng.uniform(size=(2, 2, 5, 1)))
         hum = sum((a[k] * np.exp(100j * np.pi * (k + 1) * t)).real * b[k] for k in range(2))
         bad = replace(iq, x=iq.x + 0.1 * hum + 0.5 * t / LENGTH)
-        raw.append(track_iq(bad, BOX, **SETTINGS).final_nis.mean())
+        if run < 2:
+            raw.append(track_iq(bad, BOX, **SETTINGS).final_nis.mean())
         f = track_iq(bad, BOX, **SETTINGS, lines=[0, 50, 100])
         cured.append(f.final_nis.sum() / np.isfinite(f.shift[f.used :]).sum() * 5)
         moment = iq.first + (iq.x.shape[-1] - 1) / iq.fs
@@ -135,7 +136,7 @@ def test_hum_and_a_drift_go_and_deviations_stay_right(room):
         total += error @ np.linalg.solve(P[np.ix_([0, 1, 3, 4], [0, 1, 3, 4])], error)
     assert np.mean(raw) > 10
     assert 3.5 < np.mean(cured) < 5.4
-    low, high = chi2.ppf([1e-6, 1 - 1e-6], 4 * 10)
+    low, high = chi2.ppf([1e-6, 1 - 1e-6], 4 * 6)
     assert low < total < 1.5 * high
 
 

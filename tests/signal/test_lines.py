@@ -10,7 +10,7 @@ from dopplerlib.signal.real_tone import ml_frequency_real
 from dopplerlib.signal.sliding import sliding_doppler
 from dopplerlib.signal.synthesis import complex_noise
 
-FS, WINDOW, RUNS = 2000.0, 50, 6
+FS, WINDOW, RUNS = 2000.0, 50, 4
 LINES = [50, 100, 150]
 T = np.arange(4000) / FS
 CHIRP = 140 - 40 * T  # crosses 100 Hz after a second

@@ -69,13 +69,13 @@ def test_a_window_that_touches_an_invalid_sample_does_not_count():
 
 
 def test_memory_does_not_grow_with_the_length():
-    """A block has a million values of 16 bytes, in a few copies; all windows would take 160 MB."""
-    x = np.ones(10**6, complex)
+    """A block has a million values of 16 bytes, in a few copies; all windows would take 128 MB."""
+    x = np.ones(68_000, complex)
     tracemalloc.start()
-    spectrogram(x, FS, 1000, 100)
+    spectrogram(x, FS, 4000, 32, columns=10)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert peak < 110e6
+    assert peak < 80e6
 
 
 def test_no_power_is_minus_infinity_in_db():
