@@ -43,6 +43,23 @@ def parts(box, array):
     return boxes
 
 
+def without_wrong(z, std, array, T, box, rng):
+    """Return shifts and standard deviations (runs, K, N) without those that fit no start.
+
+    What fits is decided by a robust start in the whole box. It takes the deviations for right up to
+    a factor of each run.
+    """
+    z, std = z.copy(), std.copy()
+    for some, deviations, child in zip(z, std, rng.spawn(len(z)), strict=True):
+        sigma_f = np.where(np.isinf(deviations), 1.0, deviations)
+        found = ml_initialize(
+            some, array, sigma_f, T, box, loss="bisquare", scale="estimated", rng=child, workers=1
+        )
+        wrong = found.weights == 0
+        some[wrong], deviations[wrong] = np.nan, np.inf
+    return z, std
+
+
 def hypotheses(z, std, array, T, apart, boxes, correlation=None):
     """Return initial states (runs, H, 6), chi-squares (runs, H), and weights (runs, K, N).
 

@@ -21,7 +21,7 @@ from ..signal.real_tone import ml_frequency_real, ml_frequency_real_dc
 from ..signal.sliding import sliding_doppler
 from ..signal.straight_signs import straight_signs
 from ._box import bounds
-from ._hypotheses import filters, hypotheses, parts
+from ._hypotheses import filters, hypotheses, parts, without_wrong
 from .baseband import Baseband
 
 
@@ -259,6 +259,8 @@ def track_iq(
     least_snr: Positive = 20.0,
     search: Literal["parts", "whole"] = "parts",
     start_windows: Literal["side by side", "all"] = "side by side",
+    start_loss: Literal["least_squares", "bisquare"] = "least_squares",
+    rng: np.random.Generator | None = None,
     noise: Literal["shared", "per_axis", "horizontal"] = "shared",
 ) -> IqTrack:
     """Detect and track a target in the IQ samples of an array.
@@ -318,6 +320,12 @@ def track_iq(
         "all": all, with the correlation of their errors by `overlap_correlation_discrete`. With a
         hop of a quarter of a window the errors of the start are a quarter, of a target that flies
         straight meanwhile; a target that does not is off by more than is claimed.
+    start_loss : {"least_squares", "bisquare"}
+        "bisquare": windows of the start in which something else was measured, up to nearly half of
+        them, are found by a robust start and left out; see `ml_initialize`. It takes a second or so
+        a run.
+    rng : numpy.random.Generator, optional
+        Source of the subsets of that; needed for it.
     noise : {"shared", "per_axis", "horizontal"}
         Whether the velocities wander together, as in the paper's Eq 17, each by itself, as those of
         a target do that may turn, or those along x and y only, as those of a target do whose height
@@ -419,9 +427,11 @@ def track_iq(
         )
     whole = search == "whole"
     boxes = [(lower, upper)] if whole else parts((lower, upper), iq.array)
-    states, costs, weights = hypotheses(
-        z[:, :used], std[:, :used], iq.array, T, apart, boxes, correlation
-    )
+    first, first_std = z[:, :used], std[:, :used]
+    if start_loss == "bisquare":
+        draws = _checks.generator("rng", rng)
+        first, first_std = without_wrong(first, first_std, iq.array, T, (lower, upper), draws)
+    states, costs, weights = hypotheses(first, first_std, iq.array, T, apart, boxes, correlation)
     degrees = np.isfinite(weights).sum(axis=(1, 2)) - free.sum()
     _warn_unless_plausible(costs, degrees)
     fixed = iq.array, T, used, apart, velocity_random_walk / np.sqrt(T), free

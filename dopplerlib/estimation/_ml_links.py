@@ -11,9 +11,9 @@ from ..kernels import links as kernel
 from ._ml_polish import refine
 from ._ml_problem import Found, Problem, _grid
 
-_POINTS = {0: 1, 1: 128, 2: 40, 3: 16}  # of the grid on each axis, by the number of axes
+_POINTS = {0: 1, 1: 128, 2: 40, 3: 12}  # of the grid on each axis, by the number of axes
 
-_VALUES = 160  # measurements that score the grid: so many are taken, evenly over the samples
+_VALUES = 128  # measurements that score the grid: so many are taken, evenly over the samples
 
 _CHUNK = 1024  # points of the grid that are scored at a time
 
@@ -82,7 +82,7 @@ def links_problem(links, lower, upper, times, moving):
             box = [np.tile(bound, (len(x[part]), 1)) for bound in (lower, upper)]
             for bound in box:
                 bound[:, :3] = grid[part]
-            found = refine(thin, x[part], box, iterations=3)
+            found = refine(thin, x[part], box, iterations=2)
             x[part], cost[part] = found.x, np.where(np.isfinite(found.cost), found.cost, np.inf)
         low = minimum_filter(cost.reshape(shape), size=3, mode="nearest").ravel()
         minima = np.flatnonzero((cost <= low) & np.isfinite(cost))

@@ -4,6 +4,7 @@ Seeds were written down once and are not chosen.
 """
 
 import re
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -346,3 +347,28 @@ def test_all_windows_make_a_better_start_whose_covariance_is_right():
     assert square["all"] < 0.25 * square["side by side"]
     low, high = chi2.ppf([1e-6, 1 - 1e-6], 32)
     assert low < total < high
+
+
+def test_a_start_survives_windows_with_something_else_in_them(room):
+    """Two modules hear a strong tone for a fifth of the start, at another frequency each time."""
+    rng, off = np.random.default_rng(103), []
+    for iq, _, truth in room[:4]:
+        first, x = round((0.1 - iq.first) * iq.fs), iq.x.copy()
+        there = np.arange(first, first + round(0.1 * iq.fs)) / iq.fs
+        x[[1, 3], first : first + len(there)] += 5 * np.exp(
+            2j * np.pi * rng.uniform(-90, 90, (2, 1)) * there
+        )
+        bad = replace(iq, x=x)
+        for loss, told in (
+            ("least_squares", pytest.warns(ImplausibleStart)), ("bisquare", nullcontext()),
+        ):  # fmt: skip
+            with told:
+                f = track_iq(bad, BOX, **SETTINGS, balance=False, start_loss=loss, rng=rng)
+            assert f.plausible == (loss == "bisquare")
+            i, t = np.argmin(f.score[:, 0]), f.time[f.used - 1]
+            off.append(np.linalg.norm((f.x[i, 0] - truth[round(t * FS)])[:2]))
+    plain, robust = np.array(off).reshape(4, 2).T
+    # The errors of such starts are some centimeters; a meter is no start.
+    assert (robust < 0.2).all() and np.median(plain) > 1
+    with pytest.raises(ValueError, match=r"rng must be a numpy\.random\.Generator"):
+        track_iq(room[0][0], BOX, **SETTINGS, start_loss="bisquare")
