@@ -1,5 +1,6 @@
 # Made by python -m tools.stubs; do not edit.
 from . import chain as chain
+from . import commandline as commandline
 from . import derive as derive
 from . import estimation as estimation
 from . import evaluation as evaluation

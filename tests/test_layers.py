@@ -28,6 +28,8 @@ ORDER = [
     "replication",
     "systems",
     "figures",
+    "commandline",
+    "__main__",
 ]
 # Computes with none of them, and none imports it.
 APART = {"derive": ["_lazy", "_records", "_checks", "_hints"]}

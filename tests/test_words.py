@@ -26,6 +26,7 @@ PACKAGES = (
     "replication",
     "systems",
     "figures",
+    "commandline",
 )
 
 WORDS = {

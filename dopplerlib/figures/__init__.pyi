@@ -16,6 +16,7 @@ from . import macaveiu as macaveiu
 from . import macaveiu_beyond as macaveiu_beyond
 from . import macaveiu_filter as macaveiu_filter
 from . import observability as observability
+from . import own_recording as own_recording
 from . import real_shifts as real_shifts
 from . import sombatsatien as sombatsatien
 from . import start as start

@@ -35,6 +35,7 @@ def part_calls(dl, np):
         "estimation, compiled": lambda: filtered(dl, np),
         "tracking": lambda: dl.gnn_assign([[1.0, 2.0], [3.0, 0.5]], 4.0)[0],
         "chain": lambda: dl.chain.baseband.Baseband.from_samples(np.ones((6, 500)), 1e3, ring).fs,
+        "commandline": lambda: dl.commandline.main.main(["a.wav", "--array", "missing.toml"]),
         "evaluation": lambda: dl.chi2_interval(6),
         "replication": lambda: judged(dl),
         "systems, asheim2015": lambda: s.asheim2015.noise_std([1.0, 2.0]),
