@@ -31,6 +31,7 @@ PACKAGES = (
     "systems.asheim2015", "systems.macaveiu2013", "systems.mittermaier2016",
     "systems.sombatsatien", "systems.valarmathi",
 )  # fmt: skip
+MOST = 3  # calls of a function that are kept
 # How a docstring says that arguments are checked elsewhere: such a function promises nothing.
 UNCHECKED = re.compile(r"\bunchecked\b|\bnot checked\b|nothing is checked", flags=re.IGNORECASE)
 
@@ -188,7 +189,7 @@ def _key(function):
 
 
 @functools.cache
-def trace(package, most=3):
+def trace(package):
     """Return {(name, module): calls} that the Examples in `package` make, the shortest first.
 
     The names that the examples import are wrapped while they run. Constructors are wrapped in
@@ -215,9 +216,9 @@ def trace(package, most=3):
                     runner.run(test, out=lambda text: None, clear_globs=False)
         for function, call in valid_files.calls().items():
             if function.__module__.startswith(package):
-                calls.setdefault(_key(function), []).append(call)
+                _keep(calls, _key(function), call)
                 function(**call)
-    return {key: _smallest(found, most) for key, found in calls.items()}
+    return {key: [call for _, call in found] for key, found in calls.items()}
 
 
 def example_calls(package, function):
@@ -255,10 +256,13 @@ def _recorder(function, calls, key=None, drop=0):
     signature = inspect.signature(function)
 
     def recording(*args, **kwargs):
-        bound = signature.bind(*args, **kwargs).arguments
-        kept = {name: _kept(value) for name, value in list(bound.items())[drop:]}
+        call = dict(list(signature.bind(*args, **kwargs).arguments.items())[drop:])
+        found = calls.get(key, ())
+        if len(found) == MOST and _length(call) >= found[-1][0]:
+            return function(*args, **kwargs)
+        call = {name: _kept(value) for name, value in call.items()}
         result = function(*args, **kwargs)
-        calls.setdefault(key, []).append(kept)
+        _keep(calls, key, call)
         return result
 
     recording.__wrapped__ = function
@@ -274,8 +278,16 @@ def _kept(value):
     return copy.deepcopy(value)
 
 
-def _smallest(found, most):
-    return sorted(found, key=lambda call: sum(map(_size, call.values())))[:most]
+def _keep(calls, key, call):
+    """Add a call to those of a function if it is among the shortest, of equal ones the first."""
+    found = calls.setdefault(key, [])
+    found.append((_length(call), call))
+    found.sort(key=lambda one: one[0])
+    del found[MOST:]
+
+
+def _length(call):
+    return sum(map(_size, call.values()))
 
 
 def _size(value):
