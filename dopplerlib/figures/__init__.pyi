@@ -18,6 +18,7 @@ from . import macaveiu_filter as macaveiu_filter
 from . import observability as observability
 from . import own_recording as own_recording
 from . import real_shifts as real_shifts
+from . import road as road
 from . import sombatsatien as sombatsatien
 from . import start as start
 from . import style as style
