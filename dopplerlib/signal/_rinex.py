@@ -16,7 +16,7 @@ _WIDTH = 16  # of an observation: 14 characters of number, two of flags
 _PLACES = {
     "af0": 0, "af1": 1, "af2": 2, "crs": 4, "delta_n": 5, "m0": 6, "cuc": 7, "e": 8, "cus": 9,
     "sqrt_a": 10, "toe": 11, "cic": 12, "omega0": 13, "cis": 14, "i0": 15, "crc": 16, "omega": 17,
-    "omega_dot": 18, "i_dot": 19, "week": 21, "health": 24,
+    "omega_dot": 18, "i_dot": 19, "health": 24,
 }  # fmt: skip
 
 
@@ -75,9 +75,10 @@ def navigated(name, path):
                 text += lines[i + more][width:].ljust(76)[:76]
             values = [_number(text[19 * j : 19 * j + 19]) for j in range(29)]
             told = {key: values[place] for key, place in _PLACES.items()}
-            if told["health"] == 0:
+            if not told["health"] > 0:  # or blank
                 told["toc"] = _seconds(*tokens)
-                told["toe"] += WEEK * told["week"]
+                # In the week nearest to toc: some files count weeks from 1999 or 2019 on.
+                told["toe"] += WEEK * round((told["toc"] - told["toe"]) / WEEK)
                 satellites.append(satellite)
                 rows.append([told[key] for key in ELEMENTS])
     return satellites, rows

@@ -101,6 +101,20 @@ def test_events_and_other_systems_are_skipped(pair):
     assert read_rinex(*pair(change)) == recorded_receiver("novatel")[0]
 
 
+def test_a_week_that_starts_anew_and_a_blank_health_change_nothing(pair):
+    """The third number of the sixth line of a record is the week, the second of the next health."""
+
+    def change(text):
+        assert text.count(" .156200000000D+04") == 9 and text.count("\n      .280000000000D+01") > 0
+        text = text.replace(" .156200000000D+04", " .538000000000D+03")
+        lines = text.splitlines()
+        for i in range(5 + 6, len(lines), 8):
+            lines[i] = lines[i][:23] + " " * 19 + lines[i][42:]
+        return "\n".join(lines)
+
+    assert read_rinex(*pair(navigation=change)) == recorded_receiver("novatel")[0]
+
+
 def test_phases_alone_are_read(pair):
     recording = read_rinex(*pair(lambda text: text.replace("L1C D1C S1C", "L1C D2W S1C")))
     assert np.isnan(recording.doppler).all()
