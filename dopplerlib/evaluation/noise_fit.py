@@ -15,7 +15,8 @@ from .intervals import ConfidenceInterval
 
 _STEP = 0.02  # of differences: a gate makes a likelihood rough on a smaller scale
 _GAIN = 0.01  # of the log likelihood: less is a tenth of a standard deviation
-_MOST = 30
+_SMALLEST = 1e-6
+_MOST = 50
 
 
 @record
@@ -131,8 +132,9 @@ def fit_noise(
 def _climb(densities, theta, outliers):
     """Return the parameters of the greatest likelihood, the outliers, its value, and whether found.
 
-    Fisher's scoring with the outer product of the scores (Berndt, Hall, Hall, Hausman 1974), no
-    longer than one unit in a step, which is halved until it leads up.
+    Fisher's scoring with the outer product of the scores (Berndt, Hall, Hall, Hausman 1974). A step
+    is doubled while that leads further up, as it does where the model is wrong, up to about one
+    unit, and halved until it leads up at all.
     """
 
     def value(at):
@@ -148,12 +150,14 @@ def _climb(densities, theta, outliers):
         if slope @ step < _GAIN:
             return theta, fraction, total, True
         step /= max(1.0, np.abs(step).max())
-        for _ in range(_MOST):
+        found, far = value(theta + step), value(theta + 2 * step)
+        while far[1] > found[1] and np.abs(step).max() < 1:
+            step, found = 2 * step, far
+            far = value(theta + 2 * step)
+        while not found[1] > total and np.abs(step).max() > _SMALLEST:
+            step = step / 2
             found = value(theta + step)
-            if found[1] > total:
-                break
-            step /= 2
-        else:
+        if not found[1] > total:
             return theta, fraction, total, False
         theta, (fraction, total) = theta + step, found
     return theta, fraction, total, False
