@@ -61,7 +61,9 @@ def ekf_records(
         Which measurements are used, see `ekf`. A refused one leaves the state predicted. "soft"
         refuses none: above the quantile of "upper", S is taken for larger by so much that NIS is at
         that quantile. The farther off a measurement is, the less it counts, but never nothing: a
-        filter that is off by twenty deviations comes back.
+        filter that is off by twenty deviations comes back. Every gate judges all components of a
+        sample as one; those that come as samples of their own, a millisecond apart, are judged one
+        by one.
     gate_probability : float
         Probability of the gate.
 
@@ -160,7 +162,9 @@ def ukf(
         Which measurements are used, see `ekf`. A refused one leaves the state predicted. "soft"
         refuses none: above the quantile of "upper", S is taken for larger by so much that NIS is at
         that quantile. The farther off a measurement is, the less it counts, but never nothing: a
-        filter that is off by twenty deviations comes back.
+        filter that is off by twenty deviations comes back. Every gate judges all components of a
+        sample as one; those that come as samples of their own, a millisecond apart, are judged one
+        by one.
     gate_probability : float
         Probability of the gate.
 

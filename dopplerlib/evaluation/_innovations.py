@@ -1,5 +1,7 @@
 """Common parts of consistency tests: innovations, of which some are missing, and states."""
 
+import warnings
+
 import numpy as np
 
 from .. import _checks
@@ -94,6 +96,21 @@ def chi2_tail(statistic, dof):
     from scipy.special import chdtrc
 
     return np.where(dof > 0, chdtrc(np.maximum(dof, 1), statistic), np.nan)[()]
+
+
+def winsorized(white, there, limit):
+    """Return values (..., K, m) no farther from their median than `limit` standard deviations.
+
+    The standard deviation is that of Gaussian values with the same median absolute deviation; a
+    component of which more than half are equal stays as it is.
+    """
+    values = np.where(there, white, np.nan)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a component that is missing throughout
+        middle = np.nanmedian(values, axis=-2, keepdims=True)
+        spread = 1.4826 * np.nanmedian(np.abs(values - middle), axis=-2, keepdims=True)
+    bounds = (np.where(spread > 0, middle + sign * limit * spread, white) for sign in (-1, 1))
+    return np.where(there, np.clip(white, *bounds), white)
 
 
 def ljung_box(white, there, lags, least=None):

@@ -26,6 +26,9 @@ class ErrorCorrelation:
         Correlation of the colored part over one interval `T`: the AR(1) coefficient.
     colored : ConfidenceInterval
         Fraction of the variance that is colored; 1 without a white part.
+    sigma_colored, sigma_white : float
+        Standard deviations of both parts, as `augment_linear` takes them: `sigma`, and the root of
+        `R`.
     tau : float
         Time constant of the colored part in s; zero if `rho` is not positive.
     T : float
@@ -38,6 +41,8 @@ class ErrorCorrelation:
     sigma: ConfidenceInterval
     rho: ConfidenceInterval
     colored: ConfidenceInterval
+    sigma_colored: float
+    sigma_white: float
     tau: float
     T: float
     blocks: int
@@ -146,7 +151,9 @@ def error_correlation(
     ends = np.array([values(at) for at in (theta, theta - off, theta + off)])
     mean, sigma, rhos, colored = (ConfidenceInterval(*map(float, v)) for v in ends.T)
     tau = -step / np.log(rho) if rho > 0 else 0.0
-    return ErrorCorrelation(mean, sigma, rhos, colored, float(tau), step, blocks)
+    share = min(colored.value, 1.0)
+    own, white_part = (float(sigma.value * np.sqrt(part)) for part in (share, 1 - share))
+    return ErrorCorrelation(mean, sigma, rhos, colored, own, white_part, float(tau), step, blocks)
 
 
 def _maximum(terms, theta):

@@ -6,7 +6,7 @@ from .._hints import checked
 from .._records import record
 from ..chain.track import IqTrack
 from ..estimation.track import Track
-from ._innovations import chi2_tail, ljung_box, of_track, whiten
+from ._innovations import chi2_tail, ljung_box, of_track, whiten, winsorized
 from .checklist import Check
 
 _LAGS = 5  # of the test of whiteness, at most: each takes ten samples
@@ -133,7 +133,8 @@ def track_checks(found: IqTrack) -> tuple[Check, ...]:
         each = sensor_checks(track).p_value
         worst = np.nanmin(each) * np.sum(np.isfinite(each))
         lags = max(1, min(_LAGS, int(n.max()) // 10))
-        memory = ljung_box(white, there, lags, lags + 2)[-1]
+        # Outliers would hide the correlation of the others.
+        memory = ljung_box(winsorized(white, there, 4.0), there, lags, lags + 2)[-1]
         values = [
             chi2_tail(square, n.sum(axis=-1)),
             worst,

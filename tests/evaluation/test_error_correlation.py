@@ -73,6 +73,17 @@ def test_pooled_records_are_the_estimate_by_products():
     assert found.sigma.value == pytest.approx(y.std(), rel=5e-3)
     assert found.tau == pytest.approx(-0.5 / np.log(found.rho.value))
     assert found.T == 0.5
+    assert (found.sigma_colored, found.sigma_white) == (found.sigma.value, 0.0)
+
+
+def test_both_parts_make_the_whole_variance():
+    y = errors(0.8, np.ones(K), np.random.default_rng(5))[:5]
+    y += 0.5 * np.random.default_rng(6).standard_normal(y.shape)
+    found = error_correlation(y, 0.5, white=True)
+    assert np.hypot(found.sigma_colored, found.sigma_white) == pytest.approx(found.sigma.value)
+    # About 300 independent values of the colored part, and of the white part 3000.
+    assert found.sigma_colored == pytest.approx(1.0, abs=0.15)
+    assert found.sigma_white == pytest.approx(0.5, abs=0.1)
 
 
 @pytest.mark.parametrize(
