@@ -39,7 +39,7 @@ class Fit(NamedTuple):
 def fit_run(problem, z, deviations, options, rng):
     """Return the `Fit` of one run (K, N), or None if it is too incomplete."""
     box, robust, there = (problem.lower, problem.upper), options.robust, ~np.isnan(z)
-    needed = problem.unknowns(there)
+    needed = problem.unknowns(there.ravel())
     if np.sum(there) < needed or (robust and np.sum(there) <= 2 * needed):
         return None
     if robust:

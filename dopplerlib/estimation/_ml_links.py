@@ -97,7 +97,7 @@ def links_problem(links, lower, upper, times, moving):
         )  # fmt: skip
         for i, run in enumerate(z):
             there = ~np.isnan(run)
-            if np.sum(there) < problem.unknowns(there):
+            if np.sum(there) < problem.unknowns(there.ravel()):
                 continue
             begun = starts(run, deviations)
             if not len(begun):

@@ -74,9 +74,10 @@ class Problem(NamedTuple):
         return int(np.sum(self.lower < self.upper))
 
     def unknowns(self, there):
-        """Return the number of unknowns, clocks included, of the measurements `there` (K N,)."""
-        samples = np.sum(there.reshape(self.design.shape[:2]).any(axis=1)) if self.epoch else 1
-        return self.free + int(samples) * self.design.shape[-1]
+        """Return the number of unknowns, clocks included, of measurements `there` (..., K N)."""
+        scans = there.reshape(*there.shape[:-1], *self.design.shape[:2])
+        samples = scans.any(axis=-1).sum(axis=-1) if self.epoch else 1
+        return self.free + samples * self.design.shape[-1]
 
     def data(self, z, deviations, roots=None):
         """Return the `Data` of one run (K, N)."""

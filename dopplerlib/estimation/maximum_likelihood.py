@@ -185,7 +185,7 @@ def ml_initialize(
     solved = ~np.isnan(cost)
     at_bound = (lower < upper) & ((x[:, :6] <= lower) | (x[:, :6] >= upper))
     there = weights > 0
-    degrees = np.sum(there, axis=(1, 2)) - np.array([problem.unknowns(some) for some in there])
+    degrees = np.sum(there, axis=(1, 2)) - problem.unknowns(there.reshape(runs, -1))
     if estimated and not (robust and correlation is None):
         factor = np.sqrt(np.where(degrees > 0, cost / degrees, np.nan))
         scales, cost, second_cost = scales * factor, cost / factor**2, second_cost / factor**2
