@@ -118,8 +118,10 @@ def locate_receiver(
     Noise of one second averages out over a minute, an offset that a satellite keeps does not. The
     variance of offsets is found by restricted maximum likelihood (Patterson and Thompson 1971): it
     is zero if the means of the residuals are no larger than noise makes them. With it the place is
-    the generalized least squares estimate, and `P` its covariance. Errors that look like another
-    place of the receiver show in no residual.
+    the generalized least squares estimate, and `P` its covariance. Two things are not in `P`. The
+    variance of the offsets is itself an estimate from as many residuals as there are satellites
+    beyond four: with few of them it may be found zero although it is not. And errors that look like
+    another place of the receiver, as a delay at the zenith like one of height, show in no residual.
 
     Examples
     --------

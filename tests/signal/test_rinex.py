@@ -186,7 +186,8 @@ def test_parts_of_a_recording_are_its_rows_and_columns():
     for call, message in (
         (lambda: whole.part(46, 1), "first must be below 46"),
         (lambda: whole.counted(46), "epochs must be at most 45"),
-        (lambda: whole.without(["G01"]), "satellites must be a collection|satellites must be one"),
+        (lambda: whole.without(["G01"]), "satellites must be one of"),
+        (lambda: whole.without("G03"), "satellites must be an iterable"),
     ):
         with pytest.raises(ValueError, match=message):
             call()
