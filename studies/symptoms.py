@@ -204,7 +204,9 @@ def rows(items):
     for name, run in items:
         scene = Scene(run)
         recording, setup = MISTAKES[name][0](scene)
-        yield {"mistake": name, "run": run} | measured(scene, recording, setup)
+        sensors = [int(one) + 1 for one in (scene.one, scene.other)]
+        row = {"mistake": name, "run": run, "sensors": sensors}
+        yield row | measured(scene, recording, setup)
 
 
 def measured(scene, recording, setup):
@@ -234,4 +236,5 @@ def _short(value):
 
 def contents(rows):
     """Return all runs, a line for each."""
-    return ["[\n" + ",\n".join(json.dumps(row) for row in rows) + "\n]\n"]
+    lines = ",\n".join("    " + json.dumps(row) for row in rows)
+    return [f'{{\n  "rows": [\n{lines}\n  ]\n}}\n']

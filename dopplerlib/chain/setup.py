@@ -78,6 +78,7 @@ _OPTIONAL = {
     ),
     "recording": ("layout", "delay", "factor", "fs"),
 }
+_LEAST_CARRIER = 1e6  # Hz: below it, the number is one of GHz or MHz, or the wave is one of sound
 _SOUND = (".wav", ".wave", ".flac", ".rf64", ".bw64")
 _SIGMF = (".sigmf", ".sigmf-meta", ".sigmf-data", ".gz", ".xz", ".zip", "")
 
@@ -376,7 +377,7 @@ def _fields(tables):
         _toml.check_names(f"[{name}]", tables[name], needed, _OPTIONAL.get(name, ()))
     _toml.check_names("the file", tables, (), tuple(_TABLES))
     target, alarm = dict(tables["target"]), tables.get("alarm", {})
-    box = target.pop("lower"), target.pop("upper")
+    box = [_corner(name, target.pop(name)) for name in ("lower", "upper")]
     return {
         "array": _array(tables["array"]),
         "box": box,
@@ -385,6 +386,16 @@ def _fields(tables):
         **tables.get("recording", {}),
         **alarm,
     }
+
+
+def _corner(name, value):
+    corner = _checks.moderate(name, value)
+    if corner.shape not in ((3,), (6,)):
+        raise ValueError(
+            f"{name} must hold a position, or a position and a velocity, for example "
+            f"{_line(name)}, got {value!r}"
+        )
+    return corner
 
 
 def _array(table):
@@ -396,6 +407,11 @@ def _array(table):
         )
     wave = _checks.moderate_number(waves[0], table[waves[0]])
     if waves[0] == "carrier":
+        if wave < _LEAST_CARRIER:
+            raise ValueError(
+                f"carrier must be that of a radio wave in Hz, for example {_line('carrier')}, got "
+                f"{wave:g}; for sound give wavelength"
+            )
         from scipy.constants import speed_of_light
 
         wave = speed_of_light / wave

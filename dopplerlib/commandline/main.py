@@ -93,6 +93,8 @@ def _run(options):
             "--array must be given: a file with positions, carrier, place and tracker, of which "
             "python -m dopplerlib --example trial writes one, got none"
         )
+    if not Path(options.array).is_file():
+        raise ValueError(f"--array must be a file that exists, got {options.array!r}")
     setup = Setup.from_toml(options.array)
     given = {name: getattr(options, name) for name in ("layout", "fs")}
     setup = replace(setup, **{name: value for name, value in given.items() if value is not None})

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from .._data import read_json, results
-from .intervals import proportion_interval
+from .intervals import proportion_interval, quantile_interval
 from .table import Table
 
 # The look that tells a mistake from the others.
@@ -45,23 +45,23 @@ _COLUMNS = {  # column: (key of a run, factor)
 def _runs():
     """Return {mistake: its runs}."""
     found = {}
-    for row in read_json("symptoms.json", folder=results):
+    for row in read_json("symptoms.json", folder=results)["rows"]:
         found.setdefault(row["mistake"], []).append(row)
     return found
 
 
 def symptom_table() -> Table:
-    """Return the medians of the symptoms of each mistake, with NEES and error, which need truth.
+    """Return the symptoms of each mistake, with NEES and error, which need truth.
 
     Returns
     -------
     Table
-        A dash where there is no track.
+        Medians with their intervals of 95 %; a dash where there is no track.
 
     Examples
     --------
     >>> symptom_table().rows["no target"][0]
-    nan
+    '–'
     """
     rows = {
         mistake: [_median(runs, *column) for column in _COLUMNS.values()]
@@ -77,7 +77,8 @@ def cause_table() -> Table:
     -------
     Table
         With the cause that is named most often, numbers of sensors and frequencies left out, the
-        fraction of runs in which it is, with its interval of 95 %, and the look that decides.
+        fraction of runs in which it is, that in which the sensors are right where sensors are
+        named, both with their intervals of 95 %, and the look that decides.
 
     Examples
     --------
@@ -89,8 +90,12 @@ def cause_table() -> Table:
         causes = np.array([re.sub(r"\d+", "#", run["cause"]) for run in runs])
         names, counts = np.unique(causes, return_counts=True)
         most = names[np.argmax(counts)]
-        rows[mistake] = str(most), proportion_interval(causes == most), LOOKS[mistake]
-    columns = "cause that is named most often", "fraction of runs", "look that decides"
+        right = [_right(run) for run in runs if "sensor" in run["cause"]]
+        fractions = [
+            proportion_interval(hits) if len(hits) else "–" for hits in (causes == most, right)
+        ]
+        rows[mistake] = str(most), *fractions, LOOKS[mistake]
+    columns = "most frequent cause", "fraction of runs", "sensors right", "look that decides"
     return Table(rows, columns, ".0%", corner="mistake")
 
 
@@ -117,6 +122,12 @@ def confusions() -> Table:
     return Table(rows, tuple(columns), corner="mistake")
 
 
+def _right(run):
+    """Return whether the sensors in a cause are those of which something is wrong."""
+    named = {int(one) for one in re.findall(r"\d+", run["cause"])}
+    return named == set(run["sensors"][: len(named)])
+
+
 def _median(runs, key, factor):
-    values = [run[key] for run in runs if run.get(key) is not None]
-    return factor * float(np.median(values)) if values else np.nan
+    values = [factor * run[key] for run in runs if run.get(key) is not None]
+    return quantile_interval(values) if values else "–"

@@ -127,9 +127,9 @@ def clock_offset(
     found, refused = [], []
     scales = 2 ** np.arange(int(np.log2(m / _LEAST)) + 1)
     for scale in scales:
-        means = (v[: len(v) // scale * scale].reshape(-1, scale).mean(axis=1) for v in (x, y))
+        a, b = (v[: len(v) // scale * scale].reshape(-1, scale).mean(axis=1) for v in (x, y))
         try:
-            found.append(_offset(*means, fs / scale, parts, most_ppm, false_alarm / len(scales)))
+            found.append(_offset(a, b, fs / scale, parts, most_ppm, false_alarm / len(scales)))
         except ValueError as error:
             refused.append(error)
     if not found:

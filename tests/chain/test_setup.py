@@ -87,6 +87,12 @@ def test_a_missing_table_is_shown(parse, table):
         ("carrier =", "wavelength = 0.0285\ncarrier =", "must have either carrier or wavelength"),
         ("carrier = 10.525e9", "", "must have either carrier or wavelength, for example `carrier"),
         ("carrier = 10.525e9", 'carrier = "10 GHz"', "carrier must be"),
+        ("carrier = 10.525e9", "carrier = 10.525", "carrier must be that of a radio wave in Hz"),
+        (
+            "upper = [6, 5, 1.2]",
+            "upper = [6, 5]",
+            r"upper must hold a position.*`upper = \[6, 5, 1",
+        ),
         ("window = 0.05", "window = -1", "window must be positive"),
         ('layout = "iq"', 'layout = "stereo"', "layout must be one of None, 'iq', 'qi', 'real'"),
         ("upper = [6, 5, 1.2]", "upper = [6, -5, 1.2]", "box must not be empty"),

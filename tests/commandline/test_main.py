@@ -97,7 +97,7 @@ def test_what_is_missing_or_wrong_is_named(recording, array, tmp_path, capsys, m
     monkeypatch.chdir(tmp_path)
     assert "RECORDING must be at least one file" in refused(capsys, *array)
     assert "--array must be given" in refused(capsys, recording)
-    assert "path must be a file that exists, got 'none.toml'" in refused(
+    assert "--array must be a file that exists, got 'none.toml'" in refused(
         capsys, recording, "--array", "none.toml"
     )
     assert "paths must be files that exist, got 'none.npy'" in refused(capsys, "none.npy", *array)
