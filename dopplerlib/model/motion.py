@@ -79,14 +79,14 @@ def dwna_gain(
 
 @checked
 def ncv_transition(
-    T: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+    T: ArrayLike, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
     """Return the transition matrix of constant velocity.
 
     Parameters
     ----------
-    T : float
-        Sampling interval in s; zero for two measurements at one time, which gives the identity.
+    T : array_like, shape (...)
+        Sampling intervals in s; zero for two measurements at one time, which gives the identity.
     dim : int
         Number of axes.
     order : {"axis", "derivative"}
@@ -94,7 +94,7 @@ def ncv_transition(
 
     Returns
     -------
-    ndarray, shape (2 dim, 2 dim)
+    ndarray, shape (..., 2 dim, 2 dim)
 
     Notes
     -----
@@ -113,14 +113,14 @@ def ncv_transition(
 
 @checked
 def nca_transition(
-    T: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+    T: ArrayLike, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
     """Return the transition matrix of constant acceleration.
 
     Parameters
     ----------
-    T : float
-        Sampling interval in s; zero for two measurements at one time, which gives the identity.
+    T : array_like, shape (...)
+        Sampling intervals in s; zero for two measurements at one time, which gives the identity.
     dim : int
         Number of axes.
     order : {"axis", "derivative"}
@@ -128,7 +128,7 @@ def nca_transition(
 
     Returns
     -------
-    ndarray, shape (3 dim, 3 dim)
+    ndarray, shape (..., 3 dim, 3 dim)
 
     Notes
     -----
@@ -144,14 +144,14 @@ def nca_transition(
 
 @checked
 def cwna_process_noise(
-    T: float, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+    T: ArrayLike, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
     """Return the process noise of white-noise acceleration over one interval.
 
     Parameters
     ----------
-    T : float
-        Sampling interval in s; over none there is no noise.
+    T : array_like, shape (...)
+        Sampling intervals in s; over none there is no noise.
     q : float
         Spectral density of the acceleration in m^2/s^3: over a second the velocity wanders by
         sqrt(q) m/s, whatever the sampling interval.
@@ -160,7 +160,7 @@ def cwna_process_noise(
 
     Returns
     -------
-    ndarray, shape (2 dim, 2 dim)
+    ndarray, shape (..., 2 dim, 2 dim)
 
     Notes
     -----
@@ -176,14 +176,14 @@ def cwna_process_noise(
 
 @checked
 def cwnj_process_noise(
-    T: float, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
+    T: ArrayLike, q: float, dim: int = 2, order: Literal["axis", "derivative"] = "axis"
 ) -> FloatArray:
     """Return the process noise of white-noise jerk over one interval.
 
     Parameters
     ----------
-    T : float
-        Sampling interval in s; over none there is no noise.
+    T : array_like, shape (...)
+        Sampling intervals in s; over none there is no noise.
     q : float
         Spectral density of the jerk in m^2/s^5.
     dim, order
@@ -191,7 +191,7 @@ def cwnj_process_noise(
 
     Returns
     -------
-    ndarray, shape (3 dim, 3 dim)
+    ndarray, shape (..., 3 dim, 3 dim)
 
     Notes
     -----
@@ -206,18 +206,19 @@ def cwnj_process_noise(
 
 
 def _interval(T):
-    T = _checks.one_number("T", T, _checks.moderate)
-    if T < 0:
-        raise ValueError(f"T must not be negative, got {T}")
-    return T
+    """Return an interval as a float, or intervals (...) as an array."""
+    T = _checks.moderate("T", T)
+    if not (T >= 0).all():
+        raise ValueError(f"T must not be negative, got {T.min()}")
+    return T if T.ndim else float(T)
 
 
 def _integrators(T, n):
     """Return the transition of `n` integrators in a row: T^(j - i) / (j - i)!."""
-    F = np.eye(n)
+    F = np.broadcast_to(np.eye(n), (*np.shape(T), n, n)).copy()
     for i in range(n):
         for j in range(i + 1, n):
-            F[i, j] = T ** (j - i) / factorial(j - i)
+            F[..., i, j] = T ** (j - i) / factorial(j - i)
     return F
 
 
@@ -225,18 +226,19 @@ def _white_noise(T, q, n, dim, order):
     """Return the covariance that white noise of density `q` leaves behind `n` integrators."""
     T = _interval(T)
     q = _checks.positive_number("q", q)
-    Q = np.empty((n, n))
+    Q = np.empty((*np.shape(T), n, n))
     for i in range(n):
         for j in range(n):
             # The product of T^a / a! and T^b / b!, integrated over the interval.
             a, b = n - 1 - i, n - 1 - j
-            Q[i, j] = q * T ** (a + b + 1) / ((a + b + 1) * factorial(a) * factorial(b))
+            Q[..., i, j] = q * T ** (a + b + 1) / ((a + b + 1) * factorial(a) * factorial(b))
     _checks.estimates("T, q", Q, what="process noise")
     return _all_axes(Q, dim, order)
 
 
 def _all_axes(block, dim, order):
     dim = _checks.count("dim", dim, 1000)
-    if order == "axis":
-        return np.kron(np.eye(dim), block)
-    return np.kron(block, np.eye(dim))
+    axes = np.eye(dim)
+    subscripts = "ij,...ab->...iajb" if order == "axis" else "ij,...ab->...aibj"
+    size = dim * block.shape[-1]
+    return np.einsum(subscripts, axes, block).reshape(*block.shape[:-2], size, size)

@@ -67,9 +67,22 @@ def test_the_orders_hold_the_same_numbers_at_other_places(n):
         (cwna_process_noise, (T, -1.0), "q"),
         (cwna_process_noise, (-1.0, 1.0), "T"),
         (cwnj_process_noise, (np.nan, 1.0), "T"),
-        (cwnj_process_noise, ([T], 1.0), "T"),
+        (cwnj_process_noise, ([T, -T], 1.0), "T"),
     ],
 )
 def test_an_impossible_setting_is_refused_by_name(function, arguments, name):
     with pytest.raises(ValueError, match=rf"^{name} must "):
         function(*arguments)
+
+
+@pytest.mark.parametrize("order", ["axis", "derivative"])
+def test_many_intervals_come_at_once(order):
+    T = np.array([[0.0, 0.1], [0.7, 2.0]])
+    for function, rest in (
+        (ncv_transition, ()), (nca_transition, ()), (cwna_process_noise, (0.3,)),
+        (cwnj_process_noise, (0.3,)),
+    ):  # fmt: skip
+        many = function(T, *rest, dim=3, order=order)
+        for i in np.ndindex(T.shape):
+            one = function(float(T[i]), *rest, dim=3, order=order)
+            np.testing.assert_allclose(many[i], one, rtol=1e-15)
