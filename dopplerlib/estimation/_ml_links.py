@@ -8,7 +8,7 @@ projection), and its lowest local minima are refined with all unknowns.
 import numpy as np
 
 from ..kernels import links as kernel
-from ._ml_polish import refine
+from ._ml_polish import Data, refine
 from ._ml_problem import Found, Problem, _grid
 
 _POINTS = {0: 1, 1: 128, 2: 40, 3: 12}  # of the grid on each axis, by the number of axes
@@ -72,9 +72,7 @@ def links_problem(links, lower, upper, times, moving):
 
         data = problem.data(z, deviations)
         # Samples that hold most measurements, evenly over the record.
-        thin = data._replace(
-            predict=model(few), z=data.z[few], weight=data.weight[few], design=data.design[few]
-        )
+        thin = Data(model(few), data.z[few], data.weight[few], data.design[few], epoch)
         x, cost = np.empty((len(grid), 6)), np.empty(len(grid))
         x[:, :3], x[:, 3:] = grid, np.clip(0.0, lower[3:], upper[3:])
         for first in range(0, len(grid), _CHUNK):

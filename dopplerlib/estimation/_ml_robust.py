@@ -61,8 +61,10 @@ def robust_fit(problem, z, deviations, estimate_scale, rng):
         scale = max(scale, 1e-150)
         data = problem.data(z, scale * deviations)
         if problem.epoch:
-            found = found._replace(clocks=np.stack([_epoch_clocks(data, x) for x in found.x]))
-        found = refine(data, found.x, box, bisquare, clocks=found.clocks)
+            clocks = np.stack([_epoch_clocks(data, x) for x in found.x])
+        else:
+            clocks = found.clocks
+        found = refine(data, found.x, box, bisquare, clocks=clocks)
         found = found.of([np.argmin(found.cost)])
         w = bisquare(residuals(data, found), data.there)[1].reshape(z.shape)
         # A measurement of weight w is one whose variance is 1 / w times as large.

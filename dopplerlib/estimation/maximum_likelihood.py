@@ -80,7 +80,9 @@ def ml_initialize(
         the scatter of the residuals about the fit, whatever their deviations and for errors that
         are correlated over up to `lags` samples and between the sensors of a sample. "bootstrap":
         the scatter of fits to blocks of ``lags + 1`` samples, drawn with replacement. The last two
-        need many more samples than unknowns.
+        need many more samples than unknowns. Where residuals are correlated over a good part of the
+        record, as of a driver who brakes, the sandwich claims too little and the bootstrap does
+        not.
     lags : int, optional
         See `covariance`. If None, the choice of Andrews (1991) for autoregressive errors.
     resamples : int

@@ -14,6 +14,7 @@ from . import noise_fit as noise_fit
 from . import observability as observability
 from . import power as power
 from . import range_bounds as range_bounds
+from . import robust_starts as robust_starts
 from . import symptom_study as symptom_study
 from . import symptoms as symptoms
 from . import table as table

@@ -215,3 +215,29 @@ def line_profiles(
     )
     ax.set(xlabel="place on the line (m)", ylabel="position error (m)", ylim=(5e-3, 60))
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=3)
+
+
+@drawing(7, 3.6)
+def wrong_windows(figure: Figure, panels: dict[str, dict[str, Array]]) -> None:
+    """Draw errors of starts against the fraction of wrong windows, over those without any.
+
+    panels: By title and by kind of wrong windows: for the robust and the plain start fractions,
+        ratios, and the ends of their intervals (2, F, 4).
+    """
+    axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    marks = "osD^v"
+    for ax, (title, kinds) in zip(axes, panels.items(), strict=True):
+        for i, (kind, found) in enumerate(kinds.items()):
+            for (x, ratio, low, high), color, name in zip(
+                np.moveaxis(found, -1, 1), (OURS, PUBLISHED), ("robust", "plain"), strict=True
+            ):
+                ax.errorbar(
+                    100 * x + 0.4 * (i - 1), ratio, [ratio - low, high - ratio], color=color,
+                    marker=marks[i % len(marks)], ms=4, lw=1, ls="-" if name == "robust" else "--",
+                    label=f"{name}, {kind}",
+                )  # fmt: skip
+        ax.axhline(2, color=BOUND, lw=1, ls=":")
+        ax.set(title=title, xlabel="wrong windows (%)", yscale="log")
+    axes[0].set(ylabel="error over that of the right windows (ratio)")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels) // 2)

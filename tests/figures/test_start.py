@@ -16,6 +16,8 @@ AXIS = np.linspace(-0.9, 0.9, 7)
 MAP = np.abs(AXIS)[:, None] + 0.01 * (AXIS + 1)
 LINE = RadarArray.linear(5, 0.4)
 LIMITS = np.array([0.05, 0.1, 0.2])
+# Fraction, ratio, ends of the interval; for a robust start and a plain one.
+WRONG = np.array([[[0, 1, 0.9, 1.2], [0.1, 1.1, 1, 1.3]], [[0, 1, 0.9, 1.2], [0.1, 50, 40, 70]]])
 DRAWS = np.random.default_rng(60).uniform(0.1, 0.4, (3, 20)) / [[1], [2], [4]]
 
 
@@ -38,6 +40,7 @@ def figures():
             LIMITS, {"left": {"ours": DRAWS, "published": LIMITS}}
         ),
         "line_profiles": draw.line_profiles(AXIS, {"on": AXIS**2, "off": 9 * AXIS**2}, MAP[0], 0.1),
+        "wrong_windows": draw.wrong_windows({"road": {"line": WRONG}, "ring": {"line": 2 * WRONG}}),
     }
 
 
@@ -121,3 +124,13 @@ def test_both_lines_through_the_map_and_the_bound_are_shown(figures):
     assert_allclose(on.get_ydata(), AXIS**2)
     assert_allclose(off.get_ydata(), 9 * AXIS**2)
     assert_allclose(bound.get_ydata(), MAP[0])
+
+
+def test_errors_are_drawn_against_percent_with_their_intervals(figures):
+    for ax, factor in zip(figures["wrong_windows"].axes, (1, 2), strict=True):
+        for bars, found in zip(ax.containers, factor * WRONG, strict=True):
+            line, _, (segments,) = bars.lines
+            assert_allclose(line.get_ydata(), found[:, 1])
+            assert_allclose(line.get_xdata() - line.get_xdata()[0], 100 * found[:, 0])
+            ends = [segment[:, 1] for segment in segments.get_segments()]
+            assert_allclose(ends, found[:, 2:])
