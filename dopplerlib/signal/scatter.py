@@ -15,6 +15,7 @@ _WIDE = 2  # window lengths between the frequencies of a difference
 _SPAN = 8  # windows side by side over which the scatter is averaged
 _OUTLYING = 3.0  # robust deviations from where on a difference counts as one that far off
 _MOST = 2**24
+_MEDIAN = 0.4549364231195725  # of the square of a standard normal variable
 
 
 @checked
@@ -30,11 +31,14 @@ class BoundTest:
         Degrees of freedom of the variance that is seen, overlap included; 0 if nothing is.
     p_value : float
         Probability of a ratio as large or larger if the claim is right; 1 if nothing is seen.
+    typical : float
+        The ratio by medians, which a steep part or a few wrong frequencies hardly move.
     """
 
     ratio: float
     degrees: float
     p_value: float
+    typical: float
 
 
 @checked
@@ -167,9 +171,10 @@ def bound_test(
     d = _differences(f, lag)
     seen = ~np.isnan(d)
     if not seen.any():
-        return BoundTest(0.0, 0.0, 1.0)
+        return BoundTest(0.0, 0.0, 1.0, 0.0)
     claimed = sum(c**2 * std[k * lag : k * lag + len(d)] ** 2 for k, c in enumerate(_THIRD))
-    ratio = float(np.mean((d**2 / claimed)[seen]))
+    squares = (d**2 / claimed)[seen]
+    ratio, typical = float(np.mean(squares)), float(np.median(squares) / _MEDIAN)
     apart = np.arange(-len(d) + 1, len(d))
     pairs = np.correlate(seen.astype(float), seen.astype(float), "full")
     # Of the difference, by its products with one that begins `apart` windows later.
@@ -180,7 +185,7 @@ def bound_test(
         for k, c in zip(range(-3, 4), kernel, strict=True)
     )
     degrees = float(seen.sum() ** 2 / np.sum(pairs * alike**2))
-    return BoundTest(ratio, degrees, float(chdtrc(degrees, degrees * ratio)))
+    return BoundTest(ratio, degrees, float(chdtrc(degrees, degrees * ratio)), typical)
 
 
 def _lag(window, hop):
@@ -216,5 +221,5 @@ def _mean_square(square):
     c = _OUTLYING
     # Mean of min(z^2, c^2) for a standard normal z.
     kept = 2 * (ndtr(c) - 0.5 - c * np.exp(-(c**2) / 2) / np.sqrt(2 * np.pi)) + 2 * c**2 * ndtr(-c)
-    v = np.median(square, axis=-1, keepdims=True) / 0.4549364231195725
+    v = np.median(square, axis=-1, keepdims=True) / _MEDIAN
     return np.minimum(square, c**2 * v).mean(axis=-1) / kept

@@ -161,6 +161,22 @@ def test_a_ridge_that_is_lost_ends_and_what_follows_is_another():
     assert ends[1][0][1] == pytest.approx(0.99)
 
 
+def test_parts_of_a_vehicle_and_ridges_too_short_are_left_out():
+    """Beside a steep curve: another part of the body, a vehicle of its own, and a short one."""
+    time = np.arange(200) * HOP / FS
+    curve = 500 + 600 * time
+    others = curve + 100, curve + 700, np.where(np.arange(200) < 15, 2500.0, np.nan)
+    f = np.stack([curve, *others], axis=-1)
+    f[150:, 1] = np.nan
+    found = Detections(
+        time, np.ones(200, bool), f, np.where(np.isnan(f), np.nan, 1.0), WINDOW, HOP, FS
+    )
+    for passage, left in ((0.05, [0, 1, 2]), (0.2, [0, 2])):
+        ridges = follow_ridges(found, **(MOTION | {"passage": passage}))
+        begun = sorted(ridge.frequency[0] for ridge in ridges)
+        np.testing.assert_allclose(begun, f[0, left])
+
+
 def test_a_ridge_is_checked_and_a_record_that_is_not_there_is_refused():
     one = np.ones(2)
     with pytest.raises(ValueError, match="std must have shape"):

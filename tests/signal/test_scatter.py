@@ -56,6 +56,7 @@ def test_a_claim_twice_too_good_is_rejected():
     found = [bound_test(one, 1.0, N, N // 4) for one in f]
     assert max(one.p_value for one in found) < 1e-3
     assert np.mean([one.ratio for one in found]) == pytest.approx(4.0, rel=0.15)
+    assert np.mean([one.typical for one in found]) == pytest.approx(4.0, rel=0.15)
     assert found[0].degrees > 15
 
 
