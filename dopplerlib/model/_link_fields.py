@@ -21,7 +21,8 @@ def ends(name, states, times):
     states = np.atleast_2d(states)
     K = () if times is None else times.shape
     if states.shape[-1] != 6 or not states.size or states.shape[:-2] not in ((), K):
-        wanted = "(N, 3) or (N, 6)" if times is None else f"(N, 3), (N, 6) or ({K[0]}, N, 6)"
+        over_time = "with times (K, N, 6)" if times is None else f"({K[0]}, N, 6)"
+        wanted = f"(N, 3), (N, 6) or {over_time}"
         raise ValueError(f"{name} must have shape {wanted}, got {states.shape}")
     if times is not None and states.ndim == 2:
         states = np.tile(states, (len(times), 1, 1))
@@ -36,12 +37,12 @@ def clock_matrix(clocks, N):
     if isinstance(clocks, str):
         _checks.one_of("clocks", clocks, ("common", "each"))
         return np.ones((N, 1)) if clocks == "common" else np.eye(N)
-    matrix = _checks.moderate("clocks", clocks)
+    matrix = given = _checks.moderate("clocks", clocks)
     if matrix.ndim == 1 and (matrix == np.round(matrix)).all():
         groups, group = np.unique(matrix, return_inverse=True)
         matrix = np.eye(len(groups))[group]
     if matrix.ndim != 2 or len(matrix) != N:
         raise ValueError(
-            f"clocks must be {N} whole numbers or have shape ({N}, C), got {matrix.shape}"
+            f"clocks must be {N} whole numbers or have shape ({N}, C), got {given.shape}"
         )
     return matrix.copy()
