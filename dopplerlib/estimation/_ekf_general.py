@@ -43,7 +43,13 @@ def filter_general(
                 f"{error}"
             ) from None
         R = variance[k] * np.eye(z.shape[-1])
-        return innovation, *gaussian.gain(P, H, R, ~np.isnan(innovation))
+        try:
+            return innovation, *gaussian.gain(P, H, R, ~np.isnan(innovation))
+        except ValueError as error:
+            raise ValueError(
+                "sigma_f must be large enough against P0 and sigma_clock for their sums to hold "
+                f"it, got at sample {k}: {error}"
+            ) from None
 
     predict = models.linear_motion(F, Q)
     track = recursion.filter_records(x0, P0, predict, correct, range(K), z.ndim - 2, bounds)

@@ -77,8 +77,8 @@ def ekf(
     sigma_clock, sigma_drift : float
         Process noise of the clocks of links, see `DopplerLinks.motion`: Hz and Hz/s after one
         second. For clocks of the model "epoch" `sigma_clock` is the standard deviation of each new
-        offset, which is eliminated if it is large against what offsets can be; a million times
-        `sigma_f` still leaves the differences between links their digits.
+        offset, which is eliminated if that is large against all that the prediction leaves open.
+        A million times `sigma_f` costs 1e-4 of a standard deviation in rounding; choose no more.
     keep : sequence of {"P", "innovation", "S"}
         Fields of the result that are wanted; the others are None. Ten thousand runs of a
         thousand samples need 2.9 GB for P alone.

@@ -221,6 +221,8 @@ def test_clocks_of_each_epoch_need_a_deviation_and_sensors_a_distance():
     x0 = np.r_[TARGET, 0.0]
     with pytest.raises(ValueError, match="sigma_clock must be positive for clocks"):
         ekf(np.zeros((K, 6)), links, x0, np.eye(7), T, 1.0, 0.5)
+    with pytest.raises(ValueError, match="sigma_f must be large enough against P0 and sigma_clock"):
+        ekf(np.zeros((K, 6)), links, x0, np.eye(7), T, 1.0, 0.5, sigma_clock=5e9)
     on = np.r_[SENSORS[0, :3] - T[0] * TARGET[3:], TARGET[3:], 0.0]
     with pytest.raises(ValueError, match="F x0 must not lie on a sensor"):
         ekf(np.zeros((K, 6)), links, on, np.eye(7), T, 1.0, 0.5, sigma_clock=1.0)
