@@ -319,7 +319,8 @@ def track_iq(
         Windows of the start where they overlap. "side by side": as many as share no samples.
         "all": all, with the correlation of their errors by `overlap_correlation_discrete`. With a
         hop of a quarter of a window the errors of the start are a quarter, of a target that flies
-        straight meanwhile; a target that does not is off by more than is claimed.
+        straight meanwhile; a target that does not, or an extended one, is off by more than is
+        claimed.
     start_loss : {"least_squares", "bisquare"}
         "bisquare": windows of the start in which something else was measured, up to nearly half of
         them, are found by a robust start and left out; see `ml_initialize`. It takes a second or so

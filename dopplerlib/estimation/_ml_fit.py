@@ -6,7 +6,8 @@ import numpy as np
 
 from ._ml_covariance import bootstrap, information, sandwich, slopes
 from ._ml_polish import Refined, least_squares, refine
-from ._ml_robust import TIE, robust_fit
+from ._ml_robust import TIE, residuals, robust_fit
+from .initial_estimate import FALSE_ALARM
 from .whitening import whitening_matrices
 
 
@@ -56,7 +57,7 @@ def fit_run(problem, z, deviations, options, rng):
             return None
         data, weights, scale = problem.data(z, deviations), np.where(there, 1.0, 0.0), 1.0
         found, second = _best(refine(data, x, box))
-    kept = weights > 0
+    kept, agrees = weights > 0, True
     if options.correlation is not None:
         # Errors of wrong windows belong to no law: those windows are missing, all others count.
         weights, robust = np.where(kept, 1.0, 0.0), False
@@ -65,6 +66,7 @@ def fit_run(problem, z, deviations, options, rng):
         x = np.concatenate([found.x, second.x])
         clocks = np.concatenate([found.clocks, second.clocks])
         found, second = _best(refine(data, x, box, least_squares, None, clocks))
+        agrees = _agrees(len(options.correlation), kept, found, data)
     kept = kept.ravel()
     group = options.sample if problem.epoch else 0
     r, A = slopes(data, found, kept, group)
@@ -82,8 +84,26 @@ def fit_run(problem, z, deviations, options, rng):
         second_cost = cost + second.cost[0] - found.cost[0]
     return Fit(
         np.append(found.x[0], found.clocks[0, group]), information(A, kept, robust), P, cost,
-        found.arrived[0], second_x, second_cost, np.where(there, weights, np.nan), scale,
+        found.arrived[0] and agrees, second_x, second_cost, np.where(there, weights, np.nan), scale,
     )  # fmt: skip
+
+
+def _agrees(lags, kept, found, data):
+    """Return whether residuals that were made white are so, by Ljung and Box (1978).
+
+    Of white ones each product over a lag is about normal, with a variance of the pairs there are
+    times the squared variance, so that the sum over `lags` is chi-square: beyond its quantile with
+    about the probability `FALSE_ALARM`.
+    """
+    from scipy.special import chdtri
+
+    r = residuals(data, found).reshape(kept.shape)
+    variance = np.sum(r**2) / np.sum(kept)
+    total = 0.0
+    for lag in range(1, min(lags, len(r) - 1) + 1):
+        pairs = np.sum(kept[lag:] & kept[:-lag])
+        total += np.sum(r[lag:] * r[:-lag]) ** 2 / max(pairs, 1)
+    return total <= chdtri(lags, FALSE_ALARM) * variance**2
 
 
 def _best(found: Refined):

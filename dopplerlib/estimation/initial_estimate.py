@@ -27,9 +27,9 @@ class InitialEstimate:
     x : ndarray, shape (..., 6)
         Estimated states in m and m/s; NaN if there are fewer measurements than unknowns.
     P : ndarray, shape (..., 6, 6)
-        Their covariance, as if there were no box. A component that the box fixes has variance
-        zero; one that the measurements do not determine has an infinite variance and NaN
-        covariances.
+        Their covariance to first order, as if there were no box. A component that the box fixes
+        has variance zero; one that the measurements do not determine has an infinite variance and
+        NaN covariances.
     cost : ndarray, shape (...)
         Chi-square of the estimate: the sum of the squared residuals over their variances, over all
         measurements whose weight is not zero.
@@ -40,7 +40,9 @@ class InitialEstimate:
         explain the measurements just as well (to first order), and `x` is the one of them nearest
         to the center of the box.
     converged : ndarray of bool, shape (...)
-        Whether the search ended in an optimum to rounding that is `plausible`.
+        Whether the search ended in an optimum to rounding that is `plausible`; and, if a
+        correlation of errors was given, whether the residuals can have it. The optimum may lie on
+        the box, see `at_bound`: then the box decides.
     second_x : ndarray, shape (..., 6)
         The best optimum found elsewhere; NaN if none was found.
     second_cost : ndarray, shape (...)

@@ -74,7 +74,9 @@ def ml_initialize(
         Correlation of the errors of a sensor, as a function of the lag in samples: 1 at lag zero,
         0 from lag L on; as `overlap_correlation_discrete` gives it for windows that overlap. If
         None errors are independent. With it measurements that the loss takes for wrong are left
-        out, and all others count in full.
+        out, and all others count in full. That law is of a tone in white noise, whose errors cancel
+        in sums. Those of an extended body have other reasons and do not: with the law `P` would be
+        ten times too small. Then leave it None, take windows side by side, and `P` by a bootstrap.
     covariance : {"information", "sandwich", "bootstrap"}
         Source of `P`. "information": the deviations and correlations that are assumed. "sandwich":
         the scatter of the residuals about the fit, whatever their deviations and for errors that
@@ -124,7 +126,12 @@ def ml_initialize(
 
     Correlated errors are made white in time, sensor by sensor (generalized least squares). The
     sandwich is that of Newey and West (1987). Clocks are eliminated from each step; links are
-    searched on a grid of positions without the rules above for states that are equally good.
+    searched on a grid of positions without the rules above for states that are equally good, which
+    takes some 0.3 s a run.
+
+    `P` is of first order. Where a long valley of likely states is curved, as that of a car's radars
+    for a target far ahead, errors are larger than it says and a filter that starts with it is too
+    sure; then begin with several states, see `gaussian_sum`.
 
     Examples
     --------

@@ -101,6 +101,15 @@ def test_known_correlation_gives_the_generalized_least_squares_estimate():
     assert found.cost[0] == pytest.approx(2 * fit.cost, rel=1e-8)
 
 
+@pytest.mark.parametrize("scale", ["given", "estimated"])
+def test_a_correlation_that_residuals_contradict_is_not_passed_over(scale):
+    # Errors as of a body: white, or alike over several windows; and the law of a tone in noise.
+    correlation = overlap_correlation_discrete(100, np.arange(0, 100, 25))
+    for C in (SIGMA**2 * np.eye(K), AUTOREGRESSIVE):
+        _, _, found = starts(C, 4, 34, correlation=correlation, scale=scale)
+        assert not found.converged.any()
+
+
 def test_wrong_windows_are_left_out_of_correlated_ones():
     correlation = np.array([1, 0.4])
     C = np.where(LAG < 2, correlation[np.minimum(LAG, 1)], 0.0)
