@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from dopplerlib import RadarArray, Scenario
+from dopplerlib.chain.setup import EXAMPLE, Setup
 from dopplerlib.replication.claims import RELATIONS, read_claims
 from dopplerlib.replication.deviations import read_deviations
 from dopplerlib.replication.published import Published, read_published
@@ -98,6 +99,12 @@ def test_scenario(broken):
     assert scenario is None or isinstance(scenario.array, RadarArray)
 
 
+@many(130, toml_of(EXAMPLE) | bytes_of(EXAMPLE.encode()))
+def test_setup(broken):
+    setup = read(Setup.from_toml, {"room.toml": broken}, "room.toml")
+    assert setup is None or isinstance(setup.array, RadarArray)
+
+
 @many(130, toml_of(CLAIMS) | bytes_of(CLAIMS.encode()))
 def test_claims(broken):
     for claim in read(read_claims, {"claims.toml": broken}, "claims.toml") or ():
@@ -138,3 +145,4 @@ def test_what_is_broken_was_sound(valid):
     ):
         assert read(reader, {"a.toml": text.encode()}, "a.toml")
     assert read(Scenario.from_toml, {"a.toml": SCENARIO.encode()}, "a.toml").samples == 101
+    assert read(Setup.from_toml, {"a.toml": EXAMPLE.encode()}, "a.toml").factor == 4
