@@ -339,9 +339,10 @@ def track_iq(
     Raises
     ------
     ValueError
-        If the samples of `iq` are not sound, there are less than two windows in `start` or too few
-        for the unknowns, `speed_limit` is beyond half the sampling rate, a number is not positive,
-        `dc_until` is not within the record, or an argument is refused by `sliding_doppler`.
+        If the samples of `iq` are not sound, `start` is beyond them, has less than two windows or
+        too few for the unknowns, `speed_limit` is beyond half the sampling rate, a number is not
+        positive, `dc_until` is not within the record, or an argument is refused by
+        `sliding_doppler`.
 
     Warns
     -----
@@ -414,7 +415,10 @@ def track_iq(
         z = _signed(z, d.frequency_std, signs)
         seen = ~np.isnan(z)
     std = np.where(seen, d.frequency_std * np.sqrt(variance_inflation / iq.noise_gain), np.inf)
-    used = int(np.sum(available_at <= _checks.positive_number("start", start) + 1e-9))
+    end = iq.first + x.shape[-1] / iq.fs
+    if _checks.positive_number("start", start) > end + 1e-9:
+        raise ValueError(f"start must be at most {end:g} s, the end of the record, got {start:g}")
+    used = int(np.sum(available_at <= start + 1e-9))
     if used < 2:
         raise ValueError(f"start must hold at least two windows, got {used} in {start} s")
     T = step / iq.fs

@@ -110,6 +110,9 @@ def test_what_is_missing_or_wrong_is_named(recording, array, tmp_path, capsys, m
     assert "array must have the 3 sensors of recording, got 5" in refused(
         capsys, "three.npy", *array
     )
+    assert "start must be at most 0.2 s, the end of the record, got 0.5" in refused(
+        capsys, recording, *array, "--count", "800"
+    )
     assert list(tmp_path.glob("*-track")) == []
 
 
