@@ -296,7 +296,8 @@ def track_iq(
         Whether the branches are made equal, see `correct_iq_imbalance`.
     lines : array_like, shape (L,)
         Frequencies of lines in Hz that are removed before: the hum of mains and its harmonics, 0
-        for a constant that drifts; see `remove_lines`.
+        for a constant that drifts; see `remove_lines`. They are found in the whole record, so that
+        `available_at` is not that of a system that runs.
     line_width : float
         Shifts nearer than that to a line are missing, in Hz.
     estimator : callable
@@ -305,7 +306,7 @@ def track_iq(
     signs : {"straight"} or array_like of int, broadcast to (K, N), optional
         Signs of Doppler shifts that such modules do not tell: 1 where the target approaches, -1
         where it recedes, 0 for a shift that is to be missing; or "straight", which takes them from
-        the whole record by the law of straight flight, see `straight_signs`.
+        the whole record, as with `lines`, by the law of straight flight, see `straight_signs`.
     variance_inflation : float
         Factor on the variances of the shifts.
     least_snr : float

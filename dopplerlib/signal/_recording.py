@@ -64,8 +64,8 @@ class Recording:
         x = _checks.numbers("x", self.x)
         if x.dtype.kind != "c":
             raise ValueError(
-                "x must be complex, I + 1j Q, got real numbers: the readers' layout='real' and "
-                "scipy.signal.hilbert make such samples of a module without Q"
+                "x must be complex, I + 1j Q, got real numbers: of modules without Q it is "
+                "scipy.signal.hilbert of them, with without_q=True, as the readers' layout='real'"
             )
         if x.ndim != 2 or not x.size:
             raise ValueError(f"x must have shape (S, n) with samples in it, got {x.shape}")

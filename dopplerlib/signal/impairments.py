@@ -47,7 +47,7 @@ def remove_mean(x: ArrayLike, valid: ArrayLike | None = None) -> ComplexArray:
     """Subtract the mean of IQ samples over the last axis.
 
     The mean of a tone is not zero unless the record holds whole cycles of it: this takes part of a
-    slow tone away. See `ml_frequency_dc`.
+    slow tone away. See `ml_frequency_dc`, and for a constant that drifts `remove_lines`.
 
     Parameters
     ----------

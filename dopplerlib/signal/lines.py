@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+import scipy.fft
 
 from .. import _checks
 from .._hints import AboveZero, checked
@@ -12,6 +13,8 @@ from .validity import known_samples
 
 _ROUNDS = 4  # of finding the echo beside the lines, and the lines beside the echo
 _SEEN = 20.0  # integrated signal-to-noise ratio of an echo, as that of `track_iq`
+_FINE = 8  # points of a spectrum in the resolution of the record
+_TOLD = 0.05  # of the energy of a line's knot: of less its value takes part in that of a neighbor
 _HELD = 1e-6  # of the energy of a knot's function: of less, samples say nothing of its value
 
 
@@ -41,9 +44,9 @@ def remove_lines(
     window : int
         Samples in which the Doppler shift of an echo changes little, as for `sliding_doppler`.
     width : float
-        What is nearer to a line is lost, in Hz, see `near_lines`. The amplitude of a line, a
-        complex one, goes straight for ``4 / width`` seconds: the mains' frequency is known to a
-        tenth of a hertz, and a constant may drift in such a time.
+        What is nearer to a line is lost, in Hz, see `near_lines`. The frequency of a line may be
+        off by a quarter of it, and its amplitude, a complex one, goes straight for ``4 / width``
+        seconds: so fast a constant may drift, and the frequency of mains wander.
     band : tuple of float, optional
         Lowest and highest Doppler shift in Hz; -fs/2 and fs/2 if None.
     valid : array_like of bool, broadcast to (..., n), optional
@@ -58,15 +61,15 @@ def remove_lines(
     Raises
     ------
     ValueError
-        If a valid sample is not finite, a line is not below fs/2, or an argument is refused by
-        `sliding_doppler`.
+        If a valid sample is not finite, a line is not below fs/2, two lines are nearer to each
+        other than `width`, or an argument is refused by `sliding_doppler`.
 
     Notes
     -----
     Least squares over the whole record. The unknowns are the amplitude of each line at knots
     ``4 / width`` apart, straight between them, and that of the echo at knots two windows apart,
-    whose phase is the integral of its Doppler shift in sliding windows. Shifts and amplitudes are
-    found in turn, four times.
+    whose phase is the integral of its Doppler shift in sliding windows. Shifts, the frequencies of
+    lines, within a quarter of `width`, and amplitudes are found in turn, four times.
 
     Without the echo among the unknowns, as in a notch filter, lines take whatever part of the
     record's spectrum they stand in: an echo whose shift wanders by R Hz in a second has 1/R of its
@@ -88,26 +91,28 @@ def remove_lines(
     True
     """
     x, valid = known_samples("x", x, valid, (None,))
-    lines = _frequencies(lines, fs)
     n = x.shape[-1]
+    lines = _frequencies(lines, fs, max(width, 2 * fs / max(n, 1)))
     rows = x.reshape(-1, n)
     good = np.ones(rows.shape, dtype=bool) if valid is None else valid.reshape(-1, n)
     if not len(lines) or not rows.size:
         return x
-    t = np.arange(n) / fs
-    waves = np.exp(2j * np.pi * t * np.union1d(lines, -lines)[:, None])
     steady, moving = _hats(n, 4 * fs / width), _hats(n, 2 * window)
     out = np.empty_like(rows)
     for i, (row, sound) in enumerate(zip(rows, good, strict=True)):
-        line = _fit(row, sound, waves, steady)
+        line, echo = _fit(row, sound, _waves(row, lines, fs, width), steady)
         for _ in range(_ROUNDS):
             phase, seen, near = _echo(
                 np.where(sound, row - line, 0.0), sound, fs, window, band, lines, width
             )
-            if not seen.any():
+            told = sound & ~near
+            if not told.any():
                 break
-            echo = np.where(seen, np.exp(1j * phase), 0.0)
-            line = _fit(row, sound & ~near, waves, steady, echo, moving)
+            # Of a few samples the frequency of a line would be anything.
+            search = width if 2 * told.sum() > sound.sum() else 0.0
+            waves = _waves(np.where(told, row - echo, 0.0), lines, fs, search)
+            carrier = np.where(seen, np.exp(1j * phase), 0.0)
+            line, echo = _fit(row, told, waves, _tied(steady, told), carrier, moving)
         out[i] = np.where(sound, row - line, 0.0)
     return _checks.estimates("x", out.reshape(x.shape), what="samples")
 
@@ -140,11 +145,41 @@ def near_lines(f: ArrayLike, lines: ArrayLike, width: AboveZero) -> BoolArray:
     return (np.abs(np.abs(f)[..., None] - np.abs(lines.ravel())) < width).any(axis=-1)
 
 
-def _frequencies(lines, fs):
+def _frequencies(lines, fs, apart):
+    """Return the absolute values of lines, or raise if two of them are too near to each other."""
     lines = np.abs(_checks.finite("lines", lines).ravel())
     if not (lines < fs / 2).all():
         raise ValueError(f"lines must be below fs / 2 = {fs / 2:g}, got {lines.max():g}")
+    both = _both(lines)
+    around = np.diff(both, append=both[:1] + fs)
+    if len(lines) and not around.min() >= apart:
+        raise ValueError(
+            f"lines must be {apart:.4g} Hz apart or more, also from their negatives, got "
+            f"{around.min():.4g} Hz"
+        )
     return lines
+
+
+def _waves(x, lines, fs, width):
+    """Return waves (2 L, n) of the strongest lines near given ones, and their conjugates.
+
+    Neither mains nor a converter's clock keep their frequency: a quarter of the width is searched
+    on either side of each line but 0.
+    """
+    n = len(x)
+    size = scipy.fft.next_fast_len(_FINE * n)
+    X = scipy.fft.fft(x, size)
+    power = np.abs(X) ** 2 + np.abs(np.roll(X[::-1], 1)) ** 2  # of f and -f
+    found = []
+    for line in lines:
+        reach = width / 4 if line else 0.0
+        k = np.arange(round((line - reach) * size / fs), round((line + reach) * size / fs) + 1)
+        found.append(line if len(k) < 2 else k[np.argmax(power[k])] * fs / size)
+    return np.exp(2j * np.pi * np.arange(n) / fs * _both(np.array(found))[:, None])
+
+
+def _both(lines):
+    return np.union1d(lines, -lines)
 
 
 def _echo(x, sound, fs, window, band, lines, width):
@@ -175,8 +210,20 @@ def _hats(n, distance):
     return csr_array((values, columns, 2 * np.arange(n + 1)), shape=(n, pieces + 1))
 
 
+def _tied(hats, told):
+    """Return the functions of knots, those with hardly any sample added to the nearest."""
+    from scipy.sparse import csr_array
+
+    squares = hats.power(2)
+    share = squares.T @ told.astype(float) / squares.sum(axis=0)
+    held = np.flatnonzero(share > max(_TOLD * share.max(), 1e-300))
+    knots = np.arange(hats.shape[1])
+    nearest = np.searchsorted((held[1:] + held[:-1]) / 2, knots)
+    return hats @ csr_array((np.ones(len(knots)), (knots, nearest)))
+
+
 def _fit(x, told, waves, steady, echo=None, moving=None):
-    """Return the lines (n,) in samples of which `told` says which tell of them."""
+    """Return the lines and the echo (n,) in samples of which `told` says which tell of them."""
     from scipy.sparse import diags_array, hstack
     from scipy.sparse.linalg import splu
 
@@ -188,8 +235,8 @@ def _fit(x, told, waves, steady, echo=None, moving=None):
     N, b = (AH @ A).tocsc(), AH @ x
     whole = np.concatenate([shape.power(2).sum(axis=0) for shape in shapes])
     held = np.flatnonzero(N.diagonal().real > _HELD * whole)
-    amplitudes = np.zeros(len(whole), complex)
-    if len(held):
-        amplitudes[held] = splu(N[:, held][held].tocsc()).solve(b[held])
     of_lines = len(waves) * steady.shape[1]
-    return A[:, :of_lines] @ amplitudes[:of_lines]
+    values = np.zeros(len(whole), complex)
+    if len(held):
+        values[held] = splu(N[:, held][held].tocsc()).solve(b[held])
+    return A[:, :of_lines] @ values[:of_lines], A[:, of_lines:] @ values[of_lines:]
