@@ -4,6 +4,8 @@ Nothing needs this: a loop compiles when it is first called, and numba keeps wha
 processes that start together, as those of the tests do, would all compile the same.
 """
 
+import gc
+
 import numpy as np
 
 from dopplerlib import RadarArray, ekf, ml_frequency, ml_initialize
@@ -16,6 +18,7 @@ from tools.command import parser, start
 def main(argv=None):
     """Call each of them once, on as little as it takes."""
     parser(__doc__).parse_args(argv)
+    gc.disable()  # a tenth of the time, for a compiler's trees that are soon gone with the process
     array = RadarArray.ring(6, 0.2)
     start, box = np.array([1.0, 0, 0, -1, 0, 0]), np.full((2, 6), 1.0) * [[-2], [2]]
     for runs in (1, LANES):
