@@ -165,7 +165,7 @@ def inverse_jacobian():
 
 
 def prove_shift():
-    """Return the difference of both squares of the shift, (s - p).v / |s - p| and in coordinates.
+    """Return the difference of both squares of the shift, as (s - p).v / range and in coordinates.
 
     The signs of the two agree where their numerators do, which `prove_sign` shows.
     """
