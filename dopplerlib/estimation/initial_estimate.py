@@ -29,7 +29,7 @@ class InitialEstimate:
     P : ndarray, shape (..., 6, 6)
         Their covariance to first order, as if there were no box. A component that the box fixes
         has variance zero; one that the measurements do not determine has an infinite variance and
-        NaN covariances.
+        NaN covariances. `chi_square_rise` tests whether first order is enough.
     cost : ndarray, shape (...)
         Chi-square of the estimate: the sum of the squared residuals over their variances, over all
         measurements whose weight is not zero.

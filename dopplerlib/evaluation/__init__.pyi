@@ -8,6 +8,7 @@ from . import colored_noise as colored_noise
 from . import consistency as consistency
 from . import directions as directions
 from . import error_correlation as error_correlation
+from . import first_order as first_order
 from . import frequency_benchmark as frequency_benchmark
 from . import intervals as intervals
 from . import noise_fit as noise_fit
