@@ -70,7 +70,7 @@ class ReceiverFix:
 
     @property
     def state(self) -> FloatArray:
-        """State at the first epoch as links have it: position, velocity zero, and clock (7,)."""
+        """State at the first epoch as links have it, position, velocity zero, and clock (7,)."""
         position = _checks.matrix("position", [self.position], (1, 3))[0]
         clock = _checks.one_row("clock", self.clock, _checks.measured)
         return np.r_[position, np.zeros(3), np.nan_to_num(clock[:1])]

@@ -159,7 +159,7 @@ class IqTrack:
     @property
     @_checks.quiet
     def live(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """States as they were known, sample by sample: of the hypothesis that led by then.
+        """States as they were known sample by sample, of the hypothesis that led by then.
 
         Times on the clock (1 + K - used,) from which they are known, and states (..., 1 + K - used,
         6) and covariances predicted to these times. NaN if there was no start.

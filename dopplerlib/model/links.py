@@ -127,7 +127,7 @@ class DopplerLinks:
 
     @property
     def n(self) -> int:
-        """Number of components of the state: six of the target, offsets, and their rates."""
+        """Number of components of the state, six of the target, offsets, and their rates."""
         return 6 + self.clocks.shape[1] * (2 if self.clock_model == "drift" else 1)
 
     @property
