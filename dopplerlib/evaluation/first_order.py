@@ -63,7 +63,7 @@ def chi_square_rise(
     >>> z = doppler_shift([0.5, 0.2, 0, -1, 0.5, 0], array)[None]
     >>> box = [0.1, -1, 0, -2, -2, 0], [2, 1, 0, 2, 2, 0]
     >>> start = ml_initialize(z, array, 0.01, 0.001, box)
-    >>> chi_square_rise(start, z, array, 0.01, 0.001).round(2).tolist()
+    >>> chi_square_rise(start, z, array, 0.01, 0.001).round(1).tolist()
     [1.0, 1.0]
     """
     if isinstance(array, DopplerLinks) and array.clock_model == "epoch":

@@ -145,7 +145,7 @@ def crlb_frequency_std_real(
 
     >>> phase = [0, np.pi / 2, 0]
     >>> crlb_frequency_std_real([40, 40, 420], phase, 10.0, 250, 10e3).round(2).tolist()
-    [0.49, 0.42, 0.44]
+    [0.5, 0.43, 0.44]
     """
     f, phase = _checks.finite("f", f), _checks.finite("phase", phase)
     snr, n = _checks.positive("snr", snr), _checks.whole_number("n", n, least=5)

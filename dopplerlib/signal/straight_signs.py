@@ -41,9 +41,11 @@ def straight_signs(f: ArrayLike, sigma_f: ArrayLike, confidence: Probability = 0
 
     Examples
     --------
+    A shift of 5 Hz between 15 and -25 Hz may have either sign:
+
     >>> shift = np.array([40.0, 30, 15, -5, -25, -38])
     >>> straight_signs(np.abs(shift)[:, None], 0.5)[:, 0].tolist()
-    [1, 1, 1, -1, -1, -1]
+    [1, 1, 1, 0, -1, -1]
     >>> straight_signs(np.full((6, 1), 40.0), 0.5)[:, 0].tolist()
     [0, 0, 0, 0, 0, 0]
     """
