@@ -22,37 +22,37 @@ from .track import IqTrack, track_iq
 Path = str | PathLike[str]
 # A file with all entries; an error about one that is missing shows its line.
 EXAMPLE = """\
-# An array, the place before it, and how it is watched. SI units: m, s, Hz, m/s.
+# An array, the place before it, and how it is watched. In m, s, Hz, m/s.
 
 [array]
 carrier = 10.525e9            # Hz; or wavelength, in m
-positions = [                 # m, in the order of the channels in the recording
+positions = [                 # m, in the order of the channels
   [0, 0.5, 1], [0, 1.5, 2], [0, 2.5, 1], [0, 3.5, 2], [0, 4.5, 1],
 ]
 
 [target]
-lower = [0, 0, 1.2]           # m: corners of the box that holds the target at first;
-upper = [6, 5, 1.2]           # a coordinate with equal bounds is known, here the height
+lower = [0, 0, 1.2]           # m: corners of the box of the target at first;
+upper = [6, 5, 1.2]           # what is equal is known, here the height
 speed_limit = 2.5             # m/s
-velocity_random_walk = 0.01   # m/s by which each velocity wanders in a second
+velocity_random_walk = 0.01   # m/s: wandering of each velocity in 1 s
 
 [tracker]
-window = 0.05                 # s: in it the Doppler shift changes by less than 1 / window
-start = 0.5                   # s from the beginning that the first estimate takes
-hop = 0.05                    # s from window to window; by default as long as a window
-noise = "horizontal"          # what wanders: x and y; else "per_axis", also z
-# lines = [50, 100]           # Hz: hum of the mains that is removed; 0 is a constant that drifts
-# dc_until = 0.2              # s: until then the mean is the DC offset; else of the whole record
+window = 0.05                 # s: the shift changes by < 1 / window in it
+start = 0.5                   # s that the first estimate takes
+hop = 0.05                    # s from window to window; else a window
+noise = "horizontal"          # x and y wander; "per_axis": z, too
+# lines = [50, 100]           # Hz: hum to remove; 0: a drifting constant
+# dc_until = 0.2              # s: of so much the mean is DC; else of all
 
-[recording]                   # what a file may not state; all of it has a default
-layout = "iq"                 # "iq", "qi" (Q comes first) or "real" (modules without Q)
-delay = 0.0                   # s: group delay of all filters before the converter
-factor = 4                    # every how many samples one is kept, behind a low-pass
-fs = 4000                     # Hz: of .npy, which has no place for it
+[recording]                   # what a file may not state, with defaults
+layout = "iq"                 # or "qi" (Q first), or "real" (without Q)
+delay = 0.0                   # s: of all filters before the converter
+factor = 4                    # one sample in so many, behind a low-pass
+fs = 4000                     # Hz: of .npy, which cannot state it
 
 [alarm]                       # if there is to be one
 point = [0, 2.5, 1.2]         # m: what must not be reached
-distance = 2.5                # m: nearer than that to it is too near
+distance = 2.5                # m: nearer to it is too near
 """
 # Tables, and which of their entries must be there.
 _TABLES = {

@@ -110,8 +110,7 @@ def summary(
         f"            {_percent(~recording.valid.all(axis=0))} of the samples invalid in a sensor",
         "shifts      present in "
         + ", ".join(f"{100 * one:.0f}" for one in seen.present)
-        + " % of the windows of sensors 1 to "
-        + f"{sensors}",
+        + " % of the windows",
     ]
     for check in seen.checks:
         verdict = "passed" if check.passed else "FAILED"
@@ -131,13 +130,14 @@ def summary(
 def _last(found):
     time, x, P = found.live
     std = np.sqrt(np.diagonal(P[-1]))
-    first, *rest = (
+    parts = [
         f"{name} = {value:.4g} ± {dev:.2g} {unit}"
         for name, value, dev, unit in zip(
             ("x", "y", "z", "vx", "vy", "vz"), x[-1], std, ["m"] * 3 + ["m/s"] * 3, strict=True
         )
-    )
-    return [f"track       at {time[-1]:.4g} s: {first}, " + ", ".join(rest)]
+    ]
+    rows = ", ".join(parts[:3]), ", ".join(parts[3:])
+    return [f"track       at {time[-1]:.4g} s", *(f"            {row}" for row in rows)]
 
 
 def _percent(wrong):

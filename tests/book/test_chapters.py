@@ -6,6 +6,7 @@ import re
 import nbformat
 import pytest
 
+from dopplerlib.derive.printers import WIDTH
 from tools.notebooks import chapters
 
 MOST_PRINTING = 60  # lines in all chapters together: what prints is code, and a word here or there
@@ -44,6 +45,19 @@ def test_few_lines_of_the_book_only_print():
         for name, cells in BOOK.items()
     }
     assert sum(counts.values()) <= MOST_PRINTING, {k: v for k, v in counts.items() if v}
+
+
+def test_what_cells_print_fits_the_page():
+    wide = {
+        f"{name}#{cell.id}": line
+        for name, cells in BOOK.items()
+        for cell in cells
+        for output in cell.get("outputs", [])
+        if output.output_type == "stream"
+        for line in output.text.splitlines()
+        if len(line) > WIDTH
+    }
+    assert wide == {}
 
 
 @pytest.mark.parametrize("name", WITH_EXERCISES)
