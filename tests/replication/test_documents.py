@@ -19,7 +19,7 @@ from tests.replication.review import (
 )
 from tools.judge import SEED, evidence_of
 
-EVERY = 32
+EVERY = 64
 
 
 @pytest.fixture(scope="module", params=documents())
