@@ -29,7 +29,7 @@ def document(request):
 
 @pytest.fixture(scope="module")
 def evidence(document):
-    """Return the evidence of the seed on record, at one point in 32 of each sweep.
+    """Return the evidence of the seed on record, at one point in 64 of each sweep.
 
     Each point has noise of its own, so that it repeats alone; `make judge` takes all of them.
     """
