@@ -7,6 +7,7 @@ from .. import _checks
 from .._records import record
 
 TAGS = {"start": 0.0, "center": 0.5, "end": 1.0}  # place of a timestamp in its window
+_STEPS = 60  # of a search inside a bracket
 _LARGE = 1e140  # energies; squares of what is beyond leave the range of double precision
 
 
@@ -151,3 +152,31 @@ def sum_of_ones(u, n):
     D1 = np.pi * (np.cos(a) - D0 * c / n) / s
     D2 = np.pi**2 * ((1 + c**2) * D0 / n**2 - 2 * np.cos(a) * c / n - D0 * s**2) / s**2
     return D0, D1, D2
+
+
+def climb(slopes, y, start, low, high, apart=0.0):
+    """Return where the likelihood of windows y (W, n) is highest from `low` to `high`, in bins.
+
+    Newton's method inside a bracket that shrinks, for all windows that are not there yet. `slopes`
+    takes places (W,), and the Fourier sum about the middle of the window and its two derivatives
+    there (3, W), and returns those of the likelihood. No place is nearer to zero than `apart`.
+    """
+    n = y.shape[-1]
+    t = -2j * np.pi / n * (np.arange(n) - (n - 1) / 2)
+    powers = np.stack([np.ones(n), t, t**2], axis=-1)
+    found, busy, u = start.copy(), np.arange(len(start)), start
+    for _ in range(_STEPS):
+        u = np.where(np.abs(u) < apart, np.where(u < 0, -apart, apart), u)
+        slope, bend = slopes(u, np.moveaxis((y * np.exp(t * u[:, None])) @ powers, -1, 0))
+        low, high = np.where(slope > 0, u, low), np.where(slope > 0, high, u)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            step = -slope / bend
+        newton = (bend < 0) & (u + step >= low) & (u + step <= high)
+        step = np.where(newton, step, (low + high) / 2 - u)
+        u = u + step
+        found[busy] = u
+        left = (~newton | (np.abs(step) > 1e-5)) & (high - low > 1e-9)
+        if not left.any():
+            break
+        y, u, low, high, busy = y[left], u[left], low[left], high[left], busy[left]
+    return found

@@ -7,11 +7,10 @@ import scipy.fft
 
 from .._hints import checked
 from .._typing import ArrayLike, ComplexArray, FloatArray, IntArray
-from ._bins import about_mean, limits, samples, sum_of_ones, unmoving
+from ._bins import about_mean, climb, limits, samples, sum_of_ones, unmoving
 
 _CHUNK = 128  # transforms at a time: these stay in the processor's cache
 _PAD = 4  # points of the grid in a bin, for the search beside a constant
-_STEPS = 60
 _FAINT = 1e-15  # of the loudest sample; squares in single precision end at 1e-19
 _FIRST = np.zeros(1, dtype=int)
 _NEAREST = 1e-3  # bins from the constant: nearer than that a tone cannot be told from it
@@ -178,33 +177,16 @@ def _beside_constant(x, low, high, circular):
 
 
 def _climb(y, start, left, right):
-    """Return where the likelihood beside a constant is highest between `left` and `right`, in bins.
-
-    Newton's method inside a bracket that shrinks, for all windows that are not there yet.
-    """
+    """Return where the likelihood beside a constant is highest between `left` and `right`."""
     n = y.shape[-1]
-    t = -2j * np.pi / n * (np.arange(n) - (n - 1) / 2)
-    powers = np.stack([np.ones(n), t, t**2], axis=-1)
-    found, busy = start.copy(), np.arange(len(start))
-    u, low, high = start, left, right
-    for _ in range(_STEPS):
-        u = np.where(np.abs(u) < _NEAREST, np.where(u < 0, -_NEAREST, _NEAREST), u)
-        Y0, Y1, Y2 = np.moveaxis((y * np.exp(t * u[:, None])) @ powers, -1, 0)
+
+    def slopes(u, Y):
+        Y0, Y1, Y2 = Y
         P0, P1 = np.abs(Y0) ** 2, 2 * (Y0.conj() * Y1).real
         P2 = 2 * (np.abs(Y1) ** 2 + (Y0.conj() * Y2).real)
         D0, D1, D2 = sum_of_ones(u, n)
         W0, W1, W2 = n - D0**2 / n, -2 * D0 * D1 / n, -2 * (D1**2 + D0 * D2) / n
         slope = P1 * W0 - P0 * W1
-        bend = P2 * W0 - P0 * W2 - 2 * W1 / W0 * slope
-        low, high = np.where(slope > 0, u, low), np.where(slope > 0, high, u)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            step = -slope / bend
-        newton = (bend < 0) & (u + step >= low) & (u + step <= high)
-        step = np.where(newton, step, (low + high) / 2 - u)
-        u = u + step
-        found[busy] = u
-        left = (~newton | (np.abs(step) > 1e-5)) & (high - low > 1e-9)
-        if not left.any():
-            break
-        y, u, low, high, busy = y[left], u[left], low[left], high[left], busy[left]
-    return found
+        return slope, P2 * W0 - P0 * W2 - 2 * W1 / W0 * slope
+
+    return climb(slopes, y, start, left, right, _NEAREST)

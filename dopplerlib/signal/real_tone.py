@@ -8,12 +8,11 @@ import scipy.fft
 from .. import _checks
 from .._hints import AboveZero, checked
 from .._typing import ArrayLike, FloatArray
-from ._bins import about_mean, samples, still_windows, sum_of_ones
+from ._bins import about_mean, climb, samples, still_windows, sum_of_ones
 from ._quadratures import energies, signed_sum_of_ones
 
 _CHUNK = 256  # windows at a time
 _PAD = 4  # points of the grid in a bin
-_STEPS = 60
 # Cycles in a window. A tone of fewer is a constant with a slope, or half a swing; as far from half
 # the sampling rate it alternates like one.
 FEWEST = 0.05
@@ -205,16 +204,10 @@ def _highest(y, low, high, constant):
 
 
 def _climb(y, start, low, high, constant):
-    """Return where the energy explained is highest between `low` and `high`, in cycles.
-
-    Newton's method inside a bracket that shrinks, for all windows that are not there yet.
-    """
+    """Return where the energy explained is highest between `low` and `high`, in cycles."""
     n = y.shape[-1]
-    t = -2j * np.pi / n * (np.arange(n) - (n - 1) / 2)
-    powers = np.stack([np.ones(n), t, t**2], axis=-1)
-    found, busy, u = start.copy(), np.arange(len(start)), start
-    for _ in range(_STEPS):
-        Y = np.moveaxis((y * np.exp(t * u[:, None])) @ powers, -1, 0)
+
+    def slopes(u, Y):
         D = signed_sum_of_ones(2 * u, n)
         even, odd = (n + D[0]) / 2, (n - D[0]) / 2
         c, s = [even, D[1], 2 * D[2]], [odd, -D[1], -2 * D[2]]
@@ -223,19 +216,9 @@ def _climb(y, start, low, high, constant):
             c[0] = c[0] - one[0] ** 2 / n
             c[1] = c[1] - 2 * one[0] * one[1] / n
             c[2] = c[2] - 2 * (one[1] ** 2 + one[0] * one[2]) / n
-        slope, bend = np.add(_ratio(Y.real, c), _ratio(Y.imag, s))
-        low, high = np.where(slope > 0, u, low), np.where(slope > 0, high, u)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            step = -slope / bend
-        newton = (bend < 0) & (u + step >= low) & (u + step <= high)
-        step = np.where(newton, step, (low + high) / 2 - u)
-        u = u + step
-        found[busy] = u
-        left = (~newton | (np.abs(step) > 1e-5)) & (high - low > 1e-9)
-        if not left.any():
-            break
-        y, u, low, high, busy = y[left], u[left], low[left], high[left], busy[left]
-    return found
+        return np.add(_ratio(Y.real, c), _ratio(Y.imag, s))
+
+    return climb(slopes, y, start, low, high)
 
 
 def _ratio(Y, W):
