@@ -12,7 +12,7 @@ from ..kernels import ring_coordinates as kernel
 from . import _gaussian_sum_merge, _gaussian_sum_start, _ring_member
 from ._gaussian_sum_merge import drop, merge
 from ._gaussian_sum_start import start
-from ._ring_member import LOST, compiled, factor, predict, state_at, update
+from ._ring_member import LOST, compiled, factor, predict, put, put_square, state_at, update
 
 ALONE = 2  # members with which samples are taken one by one
 _BETWEEN = 2  # blocks from one merging to the next
@@ -21,43 +21,80 @@ _MARGIN = 12.0  # by which a window may be less likely than the best, in logarit
 
 
 @compiled
-def moments(x, P, weight, count, T, noise, r, mean, covariance, state, G, L):
-    """Write mean and covariance of the state, `T` after the members, by cubature.
-
-    `noise` (C, 6) has the columns of the noise of the state on the way.
-    """
+def _cubature(x, P, T, r, mean, covariance, state, at, point, G, L):
+    """Write mean and covariance of the state, `T` after one member; False if it has none."""
+    if np.isnan(factor(P, L)):
+        return False
     for i in range(6):
         mean[i] = 0.0
         for j in range(6):
             covariance[i, j] = 0.0
-    point, at = np.empty(6), np.empty(6)
+    for k in range(12):
+        sign = np.sqrt(6.0) if k % 2 else -np.sqrt(6.0)
+        for i in range(6):
+            point[i] = x[i] + sign * L[i, k // 2]
+        state_at(point, r, at, G)
+        if not at[0] > 0.0:  # a point in or behind the plane of the sensors stays in it
+            state_at(x, r, state, G)
+            at[0], at[3] = 0.0, state[3]
+        for i in range(3):
+            at[i] += T * at[3 + i]
+        for i in range(6):
+            mean[i] += at[i] / 12
+            for j in range(i + 1):
+                covariance[i, j] += at[i] * at[j] / 12
+    for i in range(6):
+        for j in range(i + 1):
+            covariance[i, j] -= mean[i] * mean[j]
+            covariance[j, i] = covariance[i, j]
+    return True
+
+
+@compiled
+def moments(x, P, weight, count, T, noise, r, mean, covariance, shares, means, covariances,
+            state, G, L):  # fmt: skip
+    """Write mean and covariance of the state, `T` after the members, and those of the heaviest.
+
+    `noise` (C, 6) has the columns of the noise of the state on the way; `shares` (M), `means`
+    (M, 6) and `covariances` (M, 6, 6) are those of the M heaviest members, as far as there are.
+    """
+    rank = np.full(count, -1)
+    for place in range(min(len(shares), count)):
+        heaviest = -1
+        for m in range(count):
+            if rank[m] < 0 and (heaviest < 0 or weight[m] > weight[heaviest]):
+                heaviest = m
+        rank[heaviest] = place
+    for i in range(6):
+        mean[i] = 0.0
+        for j in range(6):
+            covariance[i, j] = 0.0
+    own, own_P, at, point = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty(6)
     total = 0.0
     for m in range(count):
-        if np.isnan(factor(P[m], L)):
+        if not _cubature(x[m], P[m], T, r, own, own_P, state, at, point, G, L):
             continue
-        w = np.exp(weight[m]) / 12
-        total += 12 * w
-        for k in range(12):
-            sign = np.sqrt(6.0) if k % 2 else -np.sqrt(6.0)
+        for column in noise:
             for i in range(6):
-                point[i] = x[m, i] + sign * L[i, k // 2]
-            state_at(point, r, at, G)
-            if not at[0] > 0.0:  # a point in or behind the plane of the sensors stays in it
-                state_at(x[m], r, state, G)
-                at[0], at[3] = 0.0, state[3]
-            for i in range(3):
-                at[i] += T * at[3 + i]
-            for i in range(6):
-                mean[i] += w * at[i]
                 for j in range(6):
-                    covariance[i, j] += w * at[i] * at[j]
+                    own_P[i, j] += column[i] * column[j]
+        w = np.exp(weight[m])
+        total += w
+        for i in range(6):
+            mean[i] += w * own[i]
+            for j in range(6):
+                covariance[i, j] += w * (own_P[i, j] + own[i] * own[j])
+        if rank[m] >= 0:
+            shares[rank[m]] = w
+            put(means[rank[m]], own)
+            put_square(covariances[rank[m]], own_P)
+    for place in range(len(shares)):
+        shares[place] /= total
     for i in range(6):
         mean[i] /= total
     for i in range(6):
         for j in range(6):
             covariance[i, j] = covariance[i, j] / total - mean[i] * mean[j]
-            for column in noise:
-                covariance[i, j] += column[i] * column[j]
 
 
 @compiled
@@ -81,7 +118,8 @@ def _squares(m):
 
 @compiled
 def _track(z, weights, positions, r, c, T, block, noise, mean, information, grid, widths, least,
-           lightest, loss, every, out_x, out_P, out_members):  # fmt: skip
+           lightest, loss, every, out_x, out_P, out_members, out_weights, out_means,
+           out_covariances):  # fmt: skip
     """Filter one record (K, N) of shifts; `noise` (C, 6) has the columns of that of one step."""
     K, N = z.shape
     size = len(grid)
@@ -120,7 +158,8 @@ def _track(z, weights, positions, r, c, T, block, noise, mean, information, grid
             i = k - first
             apart = (_squares(i) + _squares(length - 1 - i)) / length**2
             moments(x, P, weight, count, (k - middle) * T, _columns(noise, apart, T), r, out_x[o],
-                    out_P[o], state, G, L)  # fmt: skip
+                    out_P[o], out_weights[o], out_means[o], out_covariances[o], state, G,
+                    L)  # fmt: skip
             out_members[o] = count
         cycles += 1
         last = middle
@@ -144,13 +183,14 @@ def _cached(compiled_in):
     @cached_njit
     def filter_records(
         z, weights, positions, r, c, T, block, noise, mean, information, grid, widths, least,
-        lightest, loss, every, x, P, members,
+        lightest, loss, every, x, P, members, mixture, means, covariances,
     ):  # fmt: skip
         compiled_in  # noqa: B018  (see fingerprint)
         for run in range(len(z)):
             _track(
                 z[run], weights, positions, r, c, T, block, noise, mean, information, grid, widths,
                 least, lightest, loss, every, x[run], P[run], members[run],
+                mixture[run], means[run], covariances[run],
             )  # fmt: skip
 
     return filter_records

@@ -2,12 +2,12 @@
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from .. import _checks
-from .._hints import Count, Positive, Probability, checked
+from .._hints import Count, Positive, Probability, checked, up_to
 from .._records import record
 from .._typing import ArrayLike
 from ..kernels import ring_coordinates as kernel
@@ -36,11 +36,21 @@ class GaussianSumTrack:
         Covariance of the state.
     members : ndarray of int, shape (..., O)
         Gaussians that the sum has left, 0 if all have been lost.
+    weights : ndarray, shape (..., O, M)
+        Weights of the M heaviest Gaussians, the heaviest first; 0 where there are fewer. They add
+        up to one if none is left out.
+    means : ndarray, shape (..., O, M, 6)
+        Mean of the state in m and m/s under each of them, NaN where there are fewer.
+    covariances : ndarray, shape (..., O, M, 6, 6)
+        Covariance of the state under each of them, NaN where there are fewer.
     """
 
     x: np.ndarray
     P: np.ndarray
     members: np.ndarray
+    weights: np.ndarray
+    means: np.ndarray
+    covariances: np.ndarray
 
 
 @checked
@@ -56,6 +66,7 @@ def gaussian_sum(
     noise: Literal["shared", "per_axis"] = "per_axis",
     *,
     every: Count = 1,
+    mixture: Annotated[int, up_to(1000, least=0)] = 0,
     block: Count = 5,
     lightest: Probability = 1e-5,
     loss: Positive = 1e-3,
@@ -87,6 +98,8 @@ def gaussian_sum(
         Process noise, see `constant_velocity`.
     every : int
         Estimates are returned at the samples every - 1, 2 every - 1, ...
+    mixture : int
+        Number M of the heaviest Gaussians whose weights, means and covariances are returned, too.
     block : int
         Samples that are averaged while there are more than two Gaussians. In a block the target
         should turn little about any sensor.
@@ -158,7 +171,9 @@ def gaussian_sum(
     outputs = K // every
     # As it is where all members have been lost.
     x, covariance = np.full((runs, outputs, 6), np.nan), np.full((runs, outputs, 6, 6), np.nan)
-    members = np.zeros((runs, outputs), np.int64)
+    members, shares = np.zeros((runs, outputs), np.int64), np.zeros((runs, outputs, mixture))
+    means = np.full((runs, outputs, mixture, 6), np.nan)
+    covariances = np.full((runs, outputs, mixture, 6, 6), np.nan)
     information = np.linalg.inv(P)
     for value in (z, weights):
         value.flags.writeable = False
@@ -172,17 +187,16 @@ def gaussian_sum(
             z[rows], weights, positions, radius, array.doppler_per_speed, float(T), block, columns,
             mean, (information + information.T) / 2, grid, widths, least, float(lightest),
             float(loss), every, x[rows], covariance[rows], members[rows],
+            shares[rows], means[rows], covariances[rows],
         )  # fmt: skip
 
     with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
         list(pool.map(part, range(runs)))
-    x, covariance = x @ turn, turn.T @ covariance @ turn
-    x[..., :3] += center
-    return GaussianSumTrack(
-        x.reshape(*batch, outputs, 6),
-        covariance.reshape(*batch, outputs, 6, 6),
-        members.reshape(*batch, outputs),
-    )
+    for at in (x, means):
+        at[:] = at @ turn
+        at[..., :3] += center
+    results = (x, turn.T @ covariance @ turn, members, shares, means, turn.T @ covariances @ turn)
+    return GaussianSumTrack(*(value.reshape(*batch, *value.shape[1:]) for value in results))
 
 
 def _frame(array, x0):

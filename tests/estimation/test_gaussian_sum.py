@@ -107,6 +107,26 @@ def test_sensors_may_be_missing_and_workers_change_nothing():
     assert np.isfinite(one.x).all()
 
 
+def test_the_mixture_has_the_moments_that_are_returned():
+    _, z = records(2, 60, np.random.default_rng(6))
+    found = gaussian_sum(z, ARRAY, X0, P0, T, 0.4, 0.4, every=20, mixture=400)
+    np.testing.assert_array_equal((found.weights > 0).sum(axis=-1), found.members)
+    assert found.members.min() > 3
+    np.testing.assert_allclose(found.weights.sum(axis=-1), 1, rtol=1e-12)
+    assert (np.diff(found.weights, axis=-1) <= 0).all()
+    assert np.array_equal(np.isnan(found.means[..., 0]), found.weights == 0)
+    means, covariances = np.nan_to_num(found.means), np.nan_to_num(found.covariances)
+    mean = np.einsum("rom,romi->roi", found.weights, means)
+    np.testing.assert_allclose(mean, found.x, rtol=1e-12)
+    apart = means - mean[..., None, :]
+    P = np.einsum("rom,romij->roij", found.weights, covariances)
+    P += np.einsum("rom,romi,romj->roij", found.weights, apart, apart)
+    np.testing.assert_allclose(P, found.P, rtol=1e-9, atol=1e-12)  # of differences of squares
+    heaviest = gaussian_sum(z, ARRAY, X0, P0, T, 0.4, 0.4, every=20, mixture=3)
+    for name in ("weights", "means", "covariances"):
+        np.testing.assert_array_equal(getattr(heaviest, name), getattr(found, name)[:, :, :3])
+
+
 @pytest.mark.parametrize(
     ("array", "x0", "message"),
     [
