@@ -11,6 +11,7 @@ from . import replication as replication
 from . import signal as signal
 from . import systems as systems
 from . import tracking as tracking
+from . import workspace as workspace
 from .chain.baseband import Baseband as Baseband
 from .chain.track import IqTrack as IqTrack
 from .chain.track import track_iq as track_iq

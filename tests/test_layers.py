@@ -25,6 +25,7 @@ ORDER = [
     "tracking",
     "chain",
     "evaluation",
+    "workspace",
     "replication",
     "systems",
     "figures",

@@ -27,7 +27,8 @@ from . import valid_files
 SECTION = re.compile(r"^(\w[\w ]*)\n-+\n", flags=re.MULTILINE)
 ENTRY = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.MULTILINE)
 PACKAGES = (
-    "model", "signal", "estimation", "tracking", "chain", "evaluation", "replication", "derive",
+    "model", "signal", "estimation", "tracking", "chain", "evaluation", "workspace",
+    "replication", "derive",
     "systems.asheim2015", "systems.macaveiu2013", "systems.mittermaier2016",
     "systems.sombatsatien", "systems.valarmathi",
 )  # fmt: skip
