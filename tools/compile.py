@@ -11,6 +11,7 @@ import numpy as np
 from dopplerlib import RadarArray, ekf, ml_frequency, ml_initialize
 from dopplerlib.estimation._ekf_loop import LANES
 from dopplerlib.estimation.gaussian_sum import gaussian_sum
+from dopplerlib.evaluation.path_bounds import path_crlb
 from dopplerlib.signal.validity import valid_samples
 from dopplerlib.systems import valarmathi
 from tools.command import parser, start
@@ -27,6 +28,7 @@ def main(argv=None):
         ekf(z, array, start, np.eye(6), 0.001, 1.0, 1.0)
     ml_initialize(z, array, 1.0, 0.001, box)
     gaussian_sum(z[0], array, start, np.eye(6), 0.001, 1.0, 1.0)
+    path_crlb(np.ones((2, 6)), array, 1.0, np.eye(6))
     ml_frequency(np.ones(16, complex), 1.0)
     valid_samples(np.arange(64.0))
     rng = np.random.default_rng(1)

@@ -13,6 +13,7 @@ from . import frequency_benchmark as frequency_benchmark
 from . import intervals as intervals
 from . import noise_fit as noise_fit
 from . import observability as observability
+from . import path_bounds as path_bounds
 from . import power as power
 from . import range_bounds as range_bounds
 from . import robust_starts as robust_starts
