@@ -19,6 +19,7 @@ from dopplerlib.estimation import (
     maximum_likelihood,
     nonlinear_kalman,
     radial_velocity,
+    robust_kalman,
     smoother,
     steady_state,
     thinning,
@@ -63,6 +64,11 @@ CALLS = {
         "points": "unscented", "alpha": 0.5, "beta": 2.0, "kappa": 0.5,
         "wrap": (0,), "gate": "upper", "gate_probability": 0.9,
     },
+    robust_kalman.robust_ekf: {
+        "z": z, "f": lambda x: x @ F.T, "F": lambda x: F, "Q": Q, "R": R, "x0": x, "P0": P,
+        "method": "student-t", "threshold": 1.345, "degrees": 4.0, "gate_probability": 0.9,
+        "memory": 100.0,
+    } | nonlinear,
     imm.imm: {
         "z": z, "models": models, "x0": x, "P0": P, "transition": switch, "mode0": [0.5, 0.5],
     },
@@ -123,7 +129,7 @@ COVARIANCES = ("P", "P0", "P1", "P2", "Q", "R", "R1", "R2")
 ITERABLES = ("wrap", "scans", "keep", "box", "models")
 BOOLEANS = ("accept", "in_plane", "there")
 NOT_NUMBERS = (
-    "points", "array", "start", "manager", "h", "gate", "state", *ITERABLES, *BOOLEANS
+    "points", "array", "start", "manager", "h", "gate", "state", "method", *ITERABLES, *BOOLEANS
 )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from dopplerlib.estimation import (
     imm,
     linear_kalman,
     nonlinear_kalman,
+    robust_kalman,
     steady_state,
 )
 from dopplerlib.estimation.imm_records import ImmModel
@@ -247,6 +248,7 @@ def test_two_sensors_that_say_the_same_and_hardly_err_are_refused_by_name():
         imm.imm: {"z": [[1.0, 1.0]] * 2, "models": [ImmModel(np.eye(2), np.eye(2), same, R)] * 2},
         nonlinear_kalman.ekf_records: {"z": [[1.0, 1.0]] * 2, "R": R} | of_state(same),
         nonlinear_kalman.ukf: {"z": [[1.0, 1.0]] * 2, "R": R, "h": lambda x: x @ same},
+        robust_kalman.robust_ekf: {"z": [[1.0, 1.0]] * 2, "R": R} | of_state(same),
         extended_update.ekf_update: {"z": [1.0, 1.0], "R": R} | of_state(same),
         pda.pda_update: changed | {"z": [[1.0, 1.0]]},
         multi_target.track_scans: {
