@@ -23,6 +23,7 @@ PACKAGES = (
     "tracking",
     "chain",
     "evaluation",
+    "workspace",
     "replication",
     "systems",
     "figures",

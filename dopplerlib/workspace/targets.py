@@ -11,8 +11,9 @@ from typing import Annotated
 import numpy as np
 
 from .. import _checks
-from .._hints import Count, Positive, Runs, State, checked
+from .._hints import Count, Covariance, Positive, Runs, State, checked
 from .._typing import FloatArray
+from ..estimation import covariances
 from ..model.doppler import doppler_shift
 from ..model.radar_array import RadarArray
 
@@ -25,13 +26,13 @@ TABLE_2 = np.array([0.833, 0.111, 0.092, -0.75, -0.125, -0.018])
 
 PRIOR_MEAN = np.array([0.8, 0.0, 0.0, -0.75, 0.0, 0.0])
 PRIOR_COVARIANCE = np.diag(np.array([0.2, 0.25, 0.25, 0.25, 0.25, 0.25]) ** 2)
-_DEVIATION = np.sqrt(np.diagonal(PRIOR_COVARIANCE))
-for _value in (TABLE_2, PRIOR_MEAN, PRIOR_COVARIANCE, _DEVIATION):
+for _value in (TABLE_2, PRIOR_MEAN, PRIOR_COVARIANCE):
     _value.flags.writeable = False
 
 NEAREST = 0.05  # in m: a record ends nearer to the plane of the ring, or to a sensor
 _NEAREST_START, _FARTHEST_START = 0.45, 1.35  # in m: distance from the plane, from the center
 _CLEAR = 200  # samples that every record has
+_ATTEMPTS = 10_000  # to draw one target
 
 
 def _not_negative(name, value):
@@ -48,6 +49,7 @@ def draw_targets(
     rng: np.random.Generator,
     sigma_a: Annotated[float, _not_negative] = SIGMA_A,
     x0: State | None = None,
+    prior: tuple[State, Covariance] = (PRIOR_MEAN, PRIOR_COVARIANCE),
     samples: Count = SAMPLES,
     array: RadarArray = ARRAY,
 ) -> FloatArray:
@@ -66,6 +68,9 @@ def draw_targets(
     x0 : array_like, shape (6,), optional
         State at time zero, in m and m/s. If None it is drawn from the prior, with x above 0.45 m,
         less than 1.35 m from the origin, and so that the record lasts for 0.2 s at least.
+    prior : pair of array_like, shapes (6,) and (6, 6)
+        Mean and covariance of the state at time zero. If hardly any state is as described above,
+        that is an error.
     samples : int
         Number of samples K. Shorter paths are beginnings of longer ones.
     array : RadarArray
@@ -83,7 +88,12 @@ def draw_targets(
     >>> paths.shape, bool(np.isfinite(paths[:, :200]).all())
     ((2, 300, 6), True)
     """
-    return np.stack([_path(child, sigma_a, x0, samples, array) for child in rng.spawn(runs)])
+    mean, root = prior[0], covariances.square_root(prior[1])
+    paths = []
+    for child in rng.spawn(runs):
+        start = partial(_start, child, mean, root) if x0 is None else x0
+        paths.append(_path(child, sigma_a, start, samples, array))
+    return np.stack(paths)
 
 
 @checked
@@ -128,20 +138,24 @@ def draw_records(
 
 
 def _path(rng, sigma_a, x0, samples, array):
-    """Return one path (K, 6); truths from the prior are drawn until one is clear."""
-    while True:
-        start = PRIOR_MEAN + _DEVIATION * rng.standard_normal(6) if x0 is None else x0
+    """Return one path (K, 6), from a state or from one that `x0` draws until all is clear."""
+    for _ in range(_ATTEMPTS):
+        start = x0() if callable(x0) else x0
         head = _moved(start, sigma_a * rng.standard_normal((_CLEAR, 3)))
-        if x0 is not None:
-            break
         inside = start[0] > _NEAREST_START and np.linalg.norm(start[:3]) < _FARTHEST_START
-        if inside and not _ended(head, array).any():
+        if not callable(x0) or (inside and not _ended(head, array).any()):
             break
+    else:
+        raise ValueError(f"prior must have room for targets, got none in {_ATTEMPTS} attempts")
     more = max(samples - _CLEAR, 0)
     path = np.concatenate([head, _moved(head[-1], sigma_a * rng.standard_normal((more, 3)))])
     path = path[:samples]
     path[np.maximum.accumulate(_ended(path, array))] = np.nan
     return path
+
+
+def _start(rng, mean, root):
+    return mean + root @ rng.standard_normal(6)
 
 
 def _moved(x, a):

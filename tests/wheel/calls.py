@@ -37,6 +37,7 @@ def part_calls(dl, np):
         "chain": lambda: dl.chain.baseband.Baseband.from_samples(np.ones((6, 500)), 1e3, ring).fs,
         "commandline": lambda: dl.commandline.main.main(["a.wav", "--array", "missing.toml"]),
         "evaluation": lambda: dl.chi2_interval(6),
+        "workspace": lambda: dl.workspace.targets.draw_targets(1, rng=np.random.default_rng(1)),
         "replication": lambda: judged(dl),
         "systems, asheim2015": lambda: s.asheim2015.noise_std([1.0, 2.0]),
         "systems, macaveiu2013": lambda: s.macaveiu2013.saved_detections()[7]["target"],

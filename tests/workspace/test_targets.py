@@ -63,6 +63,14 @@ def test_truths_have_the_distribution_of_the_prior_within_its_cuts(paths):
     assert abs(scaled[:, 0].mean() - truncnorm.mean(low, np.inf)) < 0.1 + limit
 
 
+def test_another_prior_gives_other_targets():
+    prior = np.array([0.8, 0, 0, -1.75, 0, 0]), np.diag([0.01, 0, 0, 0, 0, 0])
+    path = draw_targets(30, rng=np.random.default_rng(1), prior=prior, sigma_a=0, samples=1)[:, 0]
+    np.testing.assert_allclose(path[:, 1:], np.tile([0, 0, -1.75, 0, 0], (30, 1)), atol=1e-15)
+    assert path[:, 0].min() > 0.45 - 1.75 * INTERVAL
+    assert 0.05 < path[:, 0].std() < 0.15
+
+
 def test_accelerations_are_those_of_the_model(paths):
     F, Q = constant_velocity(INTERVAL, SIGMA_A, "per_axis")
     noise = paths[:, 1:200] - paths[:, :199] @ F.T
@@ -125,6 +133,7 @@ def test_records_are_shifts_with_white_noise(paths):
         ({"samples": 0}, "samples must be a whole number"),
         ({"x0": [1, 2]}, "x0 must have shape"),
         ({"array": None}, "array must be"),
+        ({"prior": (PRIOR_MEAN - [3, 0, 0, 0, 0, 0], PRIOR_COVARIANCE)}, "prior must have room"),
     ],
 )
 def test_what_makes_no_path_is_refused(settings, message):
