@@ -9,6 +9,7 @@ import numpy as np
 from .. import _checks
 from .._hints import Count, checked
 from .._typing import ArrayLike, FloatArray
+from ..estimation.recursion import scan
 from ..model.doppler import doppler_jacobian
 from ..model.motion import dwna_gain
 from ..model.radar_array import RadarArray
@@ -161,25 +162,25 @@ def pcrlb(
     >>> float((1e3 * P[0, 0, 0] ** 0.5).round(1))
     0.5
     """
-    x, weights, P, T = _arguments(x, array, sigma_f, P0, T)
+    x, weights, P0, T = _arguments(x, array, sigma_f, P0, T)
     columns = _columns(T, sigma_a, noise)
     F, Q = np.eye(6) + T[:, None, None] * np.eye(6, k=3), columns.mT @ columns
     K = x.shape[-2]
     x = x.reshape(-1, K, 6)
-    out = np.full((K // every, 6, 6), np.nan)
-    for k in range(K):
-        state = x[~np.isnan(x[:, k, 0]), k]
-        if not len(state):
-            break
-        H = doppler_jacobian(state, array)
+
+    def step(k, P):
+        states = x[~np.isnan(x[:, k, 0]), k]
+        if not len(states):
+            return P, (np.full((6, 6), np.nan),)
+        H = doppler_jacobian(states, array)
+        J = np.einsum("rni,n,rnj->ij", H, weights[k], H, optimize=True) / len(states)
         M = F[k] @ P @ F[k].T + Q[k]
-        J = np.einsum("rni,n,rnj->ij", H, weights[k], H, optimize=True) / len(state)
         P = np.linalg.solve(np.eye(6) + M @ J, M)  # the inverse of inv(M) + J
-        P = (P + P.T) / 2
-        if (k + 1) % every == 0:
-            out[(k + 1) // every - 1] = P
-            _checks.estimates("x, sigma_f, P0", P, what="bounds")
-    return out
+        P = _checks.estimates("x, sigma_f, P0", (P + P.T) / 2, what="bounds")
+        return P, (P,)
+
+    (bound,) = scan(step, P0, range(K))
+    return bound[every - 1 :: every][: K // every]
 
 
 def _columns(T, sigma_a, noise):
