@@ -1,2 +1,3 @@
 # Made by python -m tools.stubs; do not edit.
+from . import faults as faults
 from . import targets as targets
