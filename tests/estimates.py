@@ -57,12 +57,12 @@ CALLS = {
     | nonlinear,
     nonlinear_kalman.ekf_records: {
         "z": z, "f": lambda x: x @ F.T, "F": lambda x: F, "Q": Q, "R": R, "x0": x, "P0": P,
-        "wrap": (0,), "gate": "upper", "gate_probability": 0.9,
+        "wrap": (0,), "gate": "upper", "gate_probability": 0.9, "iterations": 2,
     } | nonlinear,
     nonlinear_kalman.ukf: {
         "z": z, "f": lambda x: x @ F.T, "Q": Q, "h": nonlinear["h"], "R": R, "x0": x, "P0": P,
         "points": "unscented", "alpha": 0.5, "beta": 2.0, "kappa": 0.5,
-        "wrap": (0,), "gate": "upper", "gate_probability": 0.9,
+        "wrap": (0,), "gate": "upper", "gate_probability": 0.9, "iterations": 2,
     },
     robust_kalman.robust_ekf: {
         "z": z, "f": lambda x: x @ F.T, "F": lambda x: F, "Q": Q, "R": R, "x0": x, "P0": P,

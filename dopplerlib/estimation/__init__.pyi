@@ -15,6 +15,7 @@ from . import models as models
 from . import nonlinear_kalman as nonlinear_kalman
 from . import radial_velocity as radial_velocity
 from . import recursion as recursion
+from . import ring_model as ring_model
 from . import robust_kalman as robust_kalman
 from . import sigma_points as sigma_points
 from . import smoother as smoother

@@ -2,8 +2,8 @@
 
 A motion becomes the function that predicts an estimate, a measurement the one that returns the
 innovation and the gain. Nonlinear ones are linearized by their Jacobians (the extended filter) or
-by sigma points (the unscented and the cubature filter). What is called `each` here holds one
-function or matrix for each sample.
+by sigma points (the unscented and the cubature filter), once or again where the update has led to.
+What is called `each` here holds one function or matrix for each sample.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -23,24 +23,33 @@ def linear_motion(F: FloatArray, Q: FloatArray) -> Predict:
     return lambda k, x, P: gaussian.predict(x, P, F[k], Q[k])
 
 
-def extended_motion(f: Each, F: Each, Q: FloatArray) -> Predict:
-    """Return the prediction by functions f, with the covariance by their Jacobians F."""
+def extended_motion(f: Each, F: Each, Q: FloatArray | Each) -> Predict:
+    """Return the prediction by functions f, with the covariance by their Jacobians F.
+
+    The process noise Q may be functions of the state before the step.
+    """
 
     def predict(k, x, P):
-        _, P = gaussian.predict(x, P, F[k](x), Q[k])
+        _, P = gaussian.predict(x, P, F[k](x), _noise(Q[k], x))
         return f[k](x), P
 
     return predict
 
 
-def sampled_motion(f: Each, Q: FloatArray, scale: tuple[float, float]) -> Predict:
-    """Return the prediction by functions f at sigma points, see `sigma_points.scaling`."""
+def sampled_motion(f: Each, Q: FloatArray | Each, scale: tuple[float, float]) -> Predict:
+    """Return the prediction by functions f at sigma points, see `sigma_points.scaling`.
+
+    The process noise Q may be functions of the mean before the step.
+    """
 
     def predict(k, x, P):
-        mean, FL, rest = sigma_points.regression(f[k], x, covariances.square_root(P), scale)
-        return mean, covariances.squared(np.concatenate([FL, rest], axis=-1), Q[k])
+        return sigma_points.moments(f[k], x, P, scale, _noise(Q[k], x))
 
     return predict
+
+
+def _noise(Q, x):
+    return Q(x) if callable(Q) else Q
 
 
 def linear_measurement(
@@ -61,27 +70,59 @@ def linear_measurement(
 
 
 def extended_measurement(
-    z: FloatArray, h: Each, H: Each, R: FloatArray, wrap: Iterable[int] = ()
+    z: FloatArray, h: Each, H: Each, R: FloatArray, wrap: Iterable[int] = (), iterations: int = 1
 ) -> Correct:
-    """Return the correction by measurements of functions h with Jacobians H."""
+    """Return the correction by measurements of functions h with Jacobians H, see `_iterated`."""
 
-    def correct(k, x, P):
-        innovation, J = linearized(x, z[..., k, :], h[k], H[k], wrap)
+    def correct(k, x, P, at=None, _=None):
+        innovation, J = linearized(x if at is None else at, z[..., k, :], h[k], H[k], wrap)
+        if at is not None:
+            innovation = gaussian.innovation(x - at, innovation, J)
         return innovation, *gaussian.gain(P, J, R[k], ~np.isnan(innovation))
 
-    return correct
+    return _iterated(correct, iterations)
 
 
 def sampled_measurement(
-    z: FloatArray, h: Each, R: FloatArray, scale: tuple[float, float], wrap: Iterable[int] = ()
+    z: FloatArray,
+    h: Each,
+    R: FloatArray,
+    scale: tuple[float, float],
+    wrap: Iterable[int] = (),
+    iterations: int = 1,
 ) -> Correct:
-    """Return the correction by measurements of functions h at sigma points."""
+    """Return the correction by measurements of functions h at sigma points, see `_iterated`.
 
-    def correct(k, x, P):
-        L = covariances.square_root(P)
-        mean, HL, rest = sigma_points.regression(h[k], x, L, scale, wrap)
+    The first points are those of the prediction, the next ones those of the estimate after it.
+    """
+
+    def correct(k, x, P, at=None, P_at=None):
+        again = at is not None
+        at, P_at = (at, P_at) if again else (x, P)
+        L = covariances.square_root(P_at)
+        mean, HL, rest = sigma_points.regression(h[k], at, L, scale, wrap)
         innovation = wrapped(z[..., k, :] - mean, wrap)
-        noise = R[k] + covariances.squared(rest)
-        return innovation, *gaussian.gain_of_root(P, L, HL, noise, ~np.isnan(innovation))
+        there, noise = ~np.isnan(innovation), R[k] + covariances.squared(rest)
+        if not again:
+            return innovation, *gaussian.gain_of_root(P, L, HL, noise, there)
+        # The slope itself: it is that of another density than the one it is used with.
+        H = covariances.solve(P_at, L @ HL.mT).mT
+        return gaussian.innovation(x - at, innovation, H), *gaussian.gain(P, H, noise, there)
 
-    return correct
+    return _iterated(correct, iterations)
+
+
+def _iterated(correct, iterations):
+    """Return a correction that is linearized anew, every time where the one before has led to.
+
+    `correct` takes also the estimate and the covariance at which it is to linearize.
+    """
+    if iterations == 1:
+        return correct
+    before = _iterated(correct, iterations - 1)
+
+    def again(k, x, P):
+        innovation, K, P_after, _ = before(k, x, P)
+        return correct(k, x, P, gaussian.moved(x, K, innovation), P_after)
+
+    return again

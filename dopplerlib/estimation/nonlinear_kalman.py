@@ -18,7 +18,7 @@ def ekf_records(
     z: ArrayLike,
     f: Function,
     F: Function,
-    Q: ArrayLike,
+    Q: ArrayLike | Function,
     h: Function,
     H: Function,
     R: ArrayLike,
@@ -28,6 +28,7 @@ def ekf_records(
     wrap: Iterable[int] = (),
     gate: Literal["upper", "two-sided", "soft"] | None = None,
     gate_probability: float = 0.95,
+    iterations: int = 1,
 ) -> Track:
     """Filter whole records with an extended Kalman filter, for any motion and measurement.
 
@@ -42,8 +43,9 @@ def ekf_records(
         each sample, that of the step which leads to it.
     F : callable or sequence of callable
         Its Jacobian: takes states (..., n), returns (..., n, n).
-    Q : array_like, shape (n, n) or (K, n, n)
-        Covariance of the process noise.
+    Q : array_like, shape (n, n) or (K, n, n), or callable, or sequence of callable
+        Covariance of the process noise; or a function that takes states (..., n) before the
+        interval and returns it, (..., n, n).
     h : callable or sequence of callable
         Measurement function: takes states (..., n), returns (..., m).
     H : callable or sequence of callable
@@ -66,6 +68,9 @@ def ekf_records(
         by one.
     gate_probability : float
         Probability of the gate.
+    iterations : int
+        Linearizations of each measurement, from 1 to 100: the first at the prediction, each other
+        one at the estimate that the one before gave.
 
     Returns
     -------
@@ -79,13 +84,16 @@ def ekf_records(
         If shapes do not fit, a value is not finite (but for a NaN in `z`), also of what functions
         return and of what comes out, a matrix is not a covariance (`P0` and `Q` may be singular),
         `R` is so small that the covariance of an innovation is singular to rounding, `wrap` names a
-        component that the measurement does not have, or `gate` or `gate_probability` is not as
-        described.
+        component that the measurement does not have, or `gate`, `gate_probability` or `iterations`
+        is not as described.
 
     Notes
     -----
-    Bar-Shalom, Li, Kirubarajan (2001), Sec 10.3; covariances are sums of squares. Chang (2014) for
-    the soft gate.
+    Bar-Shalom, Li, Kirubarajan (2001), Sec 10.3, and Sec 10.5.2 for the iterated filter, whose
+    update is Gauss and Newton's method for the mode (Bell and Cathey 1993), without step control;
+    covariances are sums of squares. Innovation and S are those of the last linearization, so that
+    NIS is twice the least cost, of measurement and prediction together, if it has converged. Chang
+    (2014) for the soft gate.
 
     Examples
     --------
@@ -99,12 +107,13 @@ def ekf_records(
     [2.18, 2.11, 2.09]
     """
     z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability)
+    iterations = _checks.count("iterations", iterations, 100)
     batch, (K, m), n = z.shape[:-2], z.shape[-2:], x.shape[-1]
     f, F = each("f", f, K, (batch, (n,))), each("F", F, K, (batch, (n, n)))
     h, H = each("h", h, K, (batch, (m,))), each("H", H, K, (batch, (m, n)))
 
     motion = models.extended_motion(f, F, Q)
-    measurement = models.extended_measurement(z, h, H, R, wrap)
+    measurement = models.extended_measurement(z, h, H, R, wrap, iterations)
     track = recursion.filter_records(x, P, motion, measurement, range(K), len(batch), bounds)
     return recursion.finite("z, f, F, Q, h, H, R, x0, P0", track)
 
@@ -113,7 +122,7 @@ def ekf_records(
 def ukf(
     z: ArrayLike,
     f: Function,
-    Q: ArrayLike,
+    Q: ArrayLike | Function,
     h: Function,
     R: ArrayLike,
     x0: ArrayLike,
@@ -126,6 +135,7 @@ def ukf(
     wrap: Iterable[int] = (),
     gate: Literal["upper", "two-sided", "soft"] | None = None,
     gate_probability: float = 0.95,
+    iterations: int = 1,
 ) -> Track:
     """Filter whole records with an unscented or cubature Kalman filter, without Jacobians.
 
@@ -138,8 +148,9 @@ def ukf(
     f : callable or sequence of callable
         Motion over one interval: takes states (..., n), returns (..., n). The points of all runs
         come at once, along the axis before the last. At uneven times one for each sample.
-    Q : array_like, shape (n, n) or (K, n, n)
-        Covariance of the process noise.
+    Q : array_like, shape (n, n) or (K, n, n), or callable, or sequence of callable
+        Covariance of the process noise; or a function that takes states (..., n) before the
+        interval and returns it, (..., n, n).
     h : callable or sequence of callable
         Measurement function: takes states (..., n), returns (..., m).
     R : array_like, shape (m, m) or (K, m, m)
@@ -167,6 +178,9 @@ def ukf(
         by one.
     gate_probability : float
         Probability of the gate.
+    iterations : int
+        Regressions of each measurement, from 1 to 100: the first over the prediction, each other
+        one over the estimate that the one before gave (posterior linearization).
 
     Returns
     -------
@@ -184,7 +198,8 @@ def ukf(
     Haykin (2009) for cubature. The points are taken as a linear regression, z = H x + e, of which
     they give H L with a square root L of P, and the covariance of e, which adds to R (Lefebvre,
     Bruyninckx, De Schutter 2002; Särkkä 2013, Sec 5.5). The gain is the classical one, but the
-    covariance is a sum of squares, also where the middle point has a negative weight.
+    covariance is a sum of squares, also where the middle point has a negative weight. García-
+    Fernández, Svensson, Morelande, Särkkä (2015) for more than one regression.
 
     Angles are averaged as differences from that of the middle, which is their mean on the circle as
     long as they spread less than half of it. Functions are called at the middle with "cubature",
@@ -202,6 +217,7 @@ def ukf(
     [2.07, 1.97, 1.99]
     """
     z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability)
+    iterations = _checks.count("iterations", iterations, 100)
     batch, (K, m), n = z.shape[:-2], z.shape[-2:], x.shape[-1]
     _checks.one_of("points", points, ("cubature", "unscented"))
     scale = sigma_points.scaling(n, alpha, beta, kappa)
@@ -211,7 +227,7 @@ def ukf(
     f, h = each("f", f, K, (many, (n,))), each("h", h, K, (many, (m,)))
 
     motion = models.sampled_motion(f, Q, scale)
-    measurement = models.sampled_measurement(z, h, R, scale, wrap)
+    measurement = models.sampled_measurement(z, h, R, scale, wrap, iterations)
     track = recursion.filter_records(x, P, motion, measurement, range(K), len(batch), bounds)
     return recursion.finite("z, f, Q, h, R, x0, P0", track)
 
@@ -226,7 +242,10 @@ def _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability):
         name, value = ("z", z) if n else ("x0", x0)
         raise ValueError(f"{name} must not be empty, got shape {value.shape}")
     batch, (K, m) = z.shape[:-2], z.shape[-2:]
-    Q = _checks.each_sample("Q", _checks.covariance("Q", Q, n, definite=False), K, (n, n))
+    if callable(Q) or (isinstance(Q, (list, tuple)) and any(map(callable, Q))):
+        Q = each("Q", Q, K, (batch, (n, n)))
+    else:
+        Q = _checks.each_sample("Q", _checks.covariance("Q", Q, n, definite=False), K, (n, n))
     R = _checks.each_sample("R", _checks.covariance("R", R, m), K, (m, m))
     x0 = _checks.each_run("x0", x0, batch, (n,))
     P0 = _checks.each_run("P0", P0, batch, (n, n))

@@ -18,6 +18,7 @@ import numpy as np
 
 from .. import _checks
 from .._typing import FloatArray
+from . import covariances
 from .extended_update import wrapped
 
 
@@ -69,3 +70,18 @@ def regression(
     d = (plus + minus) / 2
     mu = np.sum(d, axis=-2) / s**2
     return middle + mu, (plus - minus).mT / (2 * s), (d - t * mu[..., None, :]).mT / s
+
+
+def moments(
+    function: Callable[[FloatArray], FloatArray],
+    x: FloatArray,
+    P: FloatArray,
+    scale: tuple[float, float],
+    noise: FloatArray | float = 0.0,
+) -> tuple[FloatArray, FloatArray]:
+    """Return mean and covariance of a function of Gaussians, plus the covariance of a noise.
+
+    Arguments as in `regression`, with covariances P (..., n, n).
+    """
+    mean, FL, rest = regression(function, x, covariances.square_root(P), scale)
+    return mean, covariances.squared(np.concatenate([FL, rest], axis=-1), noise)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from dopplerlib import (
     RadarArray,
@@ -36,11 +37,14 @@ HOLES[0, 2] = HOLES[1, 3:6, 0] = HOLES[:, 8, 1] = np.nan
 
 MODEL = {"f": lambda x: x @ F.T, "h": lambda x: x @ H.T, "Q": Q, "R": R, "x0": x0, "P0": P0}
 SLOPES = {"F": lambda x: F, "H": lambda x: H}
+AGAIN = {"iterations": 3}
 FILTERS = {
     "ekf": lambda z, **settings: ekf_records(z, **SLOPES | MODEL | settings),
     "cubature": lambda z, **settings: ukf(z, **MODEL | settings),
     "unscented": lambda z, **settings: ukf(z, points="unscented", alpha=0.5, **MODEL | settings),
     "negative middle": lambda z, **settings: ukf(z, points="unscented", **MODEL | settings),
+    "iterated ekf": lambda z, **settings: ekf_records(z, **SLOPES | MODEL | AGAIN | settings),
+    "iterated cubature": lambda z, **settings: ukf(z, **MODEL | AGAIN | settings),
 }
 every_filter = pytest.mark.parametrize("name", FILTERS)
 
@@ -124,7 +128,7 @@ def test_what_is_refused_leaves_the_state_as_if_it_were_missing(name, gate):
 def test_behind_a_soft_gate_noise_is_as_large_as_brings_nis_to_the_bound(name):
     """One component: S is larger by NIS over the bound, if R is larger by the rest (Chang 2014)."""
     one = {"h": lambda x: x @ H[:1].T, "R": R[:1, :1]}
-    if name == "ekf":
+    if name.endswith("ekf"):
         one |= {"H": lambda x: H[:1]}
     track = FILTERS[name](HOLES[..., :1], **one, gate="soft", gate_probability=0.6)
     there = ~np.isnan(track.nis)
@@ -284,6 +288,91 @@ def test_cubature_of_a_square_by_hand():
     assert track.x[0, 0] == pytest.approx(2.2) and track.P[0, 0, 0] == pytest.approx(0.2)
 
 
+def test_posterior_linearization_of_a_square_by_hand():
+    """After one step x ~ N(2.2, 0.2). Over that, x^2 has mean 5.04, slope 4.4, nothing is left."""
+    track = ukf(
+        [[6.0]], lambda x: x, [[0.0]], lambda x: x**2, [[4.0]], [2.0], [[1.0]], iterations=2
+    )
+    assert track.innovation[0, 0] == pytest.approx(6 - 5.04 + 4.4 * 0.2)
+    assert track.S[0, 0, 0] == pytest.approx(4.4**2 + 4)
+    assert track.x[0, 0] == pytest.approx(2 + 4.4 / 23.36 * 1.84)
+    assert track.P[0, 0, 0] == pytest.approx(4 / 23.36)
+
+
+def test_posterior_linearization_counts_what_the_line_misses_by_hand():
+    """With alpha 1, kappa 2 the moments are exact: the line of x^2 over N(m, P) misses 2 P^2."""
+    track = ukf(
+        [[6.0]], lambda x: x, [[0.0]], lambda x: x**2, [[4.0]], [2.0], [[1.0]],
+        points="unscented", alpha=1.0, beta=0.0, kappa=2.0, iterations=2,
+    )  # fmt: skip
+    m, P = 2 + 4 / 22, 1 - 16 / 22
+    assert track.S[0, 0, 0] == pytest.approx((2 * m) ** 2 + 4 + 2 * P**2)
+    assert track.innovation[0, 0] == pytest.approx(6 - m**2 - P - 2 * m * (2 - m))
+
+
+def posterior_linearization(z, f, Q, h, R, x, P, iterations):
+    """Return x and P of García-Fernández et al. (2015), with the sums over points of Section II."""
+
+    def regression(function, x, P):
+        root = np.linalg.cholesky(len(x) * P)
+        points = np.array([*(x + root.T), *(x - root.T)])
+        values = np.array([function(point) for point in points])
+        mean = values.mean(axis=0)
+        C = (points - x).T @ (values - mean) / len(points)
+        A = C.T @ np.linalg.inv(P)
+        return A, mean - A @ x, (values - mean).T @ (values - mean) / len(points) - A @ P @ A.T
+
+    found = []
+    for measured in z:
+        A, b, left = regression(f, x, P)
+        ahead, P_ahead = A @ x + b, A @ P @ A.T + left + Q
+        x, P = ahead, P_ahead
+        for _ in range(iterations):
+            A, b, left = regression(h, x, P)
+            S = A @ P_ahead @ A.T + left + R
+            gain = P_ahead @ A.T @ np.linalg.inv(S)
+            x = ahead + gain @ (measured - A @ ahead - b)
+            P = P_ahead - gain @ S @ gain.T
+        found.append((x, P))
+    return map(np.array, zip(*found, strict=True))
+
+
+@pytest.mark.parametrize("iterations", [1, 2, 5])
+def test_posterior_linearization_is_that_of_the_paper(iterations):
+    x, P = posterior_linearization(RECORD, *NONLINEAR.values(), iterations)
+    track = ukf(RECORD, **NONLINEAR, iterations=iterations)
+    np.testing.assert_allclose(track.x, x, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(track.P, P, rtol=1e-9, atol=1e-9)
+
+
+def test_the_iterated_filter_ends_at_the_mode():
+    """SciPy finds the mode of prior times likelihood; the Jacobian there gives P and NIS."""
+    still = {"f": lambda x: x, "F": lambda x: np.eye(2), "Q": np.zeros((2, 2))}
+    h = {"h": lambda x: x**2 + x[..., ::-1], "H": lambda x: 2 * x[..., None] * np.eye(2) + SWAP}
+    seen, start, spread = np.array([4.0, 7.0]), np.array([1.2, 1.9]), np.diag([0.5, 0.8])
+    track = ekf_records(seen[None], **still, **h, R=R, x0=start, P0=spread, iterations=40)
+    roots = [np.linalg.inv(np.linalg.cholesky(matrix)) for matrix in (spread, R)]
+    found = least_squares(
+        lambda x: np.concatenate([roots[0] @ (x - start), roots[1] @ (seen - h["h"](x))]),
+        start, xtol=1e-15, ftol=1e-15, gtol=1e-15,
+    )  # fmt: skip
+    np.testing.assert_allclose(track.x[0], found.x, rtol=1e-7)
+    np.testing.assert_allclose(track.P[0], np.linalg.inv(found.jac.T @ found.jac), rtol=1e-6)
+    assert track.nis[0] == pytest.approx(2 * found.cost, rel=1e-7)
+
+
+SWAP = np.eye(2)[::-1]
+
+
+@pytest.mark.parametrize("name", ["ekf", "cubature"])
+def test_process_noise_may_depend_on_the_state(name):
+    """It is that of the state before the step: a filter with matrices that are read off it."""
+    track = FILTERS[name](z[0], Q=lambda x: Q * (1 + x[..., 0, None, None] ** 2))
+    before = np.array([x0, *track.x[:-1]])[:, 0]
+    want = FILTERS[name](z[0], Q=Q * (1 + before[:, None, None] ** 2))
+    assert_close(track, want, rtol=1e-12)
+
+
 def test_unscented_points_see_what_cubature_misses_of_a_square():
     """With alpha 1, kappa 2 the moments are exact: mean m^2 + P, variance 4 m^2 P + 2 P^2."""
     track = ukf(
@@ -362,6 +451,8 @@ def test_bad_input_is_named(which, argument):
         ({"alpha": 0.0}, "alpha must be positive, got 0.0"),
         ({"kappa": -4.0}, "kappa must be above -4 for a state of length 4, got -4.0"),
         ({"beta": -1e-3, "kappa": 2.0, "alpha": 0.01}, "beta must be at least -5e-05 with .* got"),
+        ({"iterations": 101}, "iterations must be at most 100, got 101"),
+        ({"Q": lambda x: x}, r"Q\(x\) must have shape"),
         ({"points": "Gauss"}, "points must be one of 'cubature', 'unscented', got 'Gauss'"),
         ({"f": [MODEL["f"]] * 3}, "f must be a function, or 12 of them, one .* got 3 objects"),
     ],
