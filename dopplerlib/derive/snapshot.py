@@ -1,22 +1,18 @@
-"""Why a ring sees five numbers and not six, and which second state a plane array nearly confuses.
+"""Why a ring sees five numbers and not six.
 
 `dopplerlib.derive.ring` proves that the states of a family look alike. Here is the other half, that
 nothing else is lost: the gradient of the shift around a circle is a polynomial with five
-coefficients. And the Doppler shifts of sensors in a plane, expanded in the size of the array,
-agree to second order for a state and its twin, which `dopplerlib.model.twin` has as numbers.
+coefficients.
 """
-
-from typing import Annotated
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from .._hints import checked, up_to
+from .._hints import checked
 from . import ring
 from ._arguments import RationalMatrix
 
 POINT = sp.Symbol("zeta")  # exp(i varphi) for a sensor at the angle varphi
-SIZE = sp.Symbol("epsilon", positive=True)  # scale of the array
 
 
 def ring_harmonics():
@@ -76,34 +72,3 @@ def family_of_invariants():
 def prove_harmonics_miss_the_family():
     """Return `ring_harmonics` times `family_of_invariants`."""
     return (ring_harmonics() @ family_of_invariants()).expand()
-
-
-@checked
-def prove_twin_agrees(order: Annotated[int, up_to(3, least=0)]) -> sp.Expr:
-    """Return the term of this order, in the size of a plane array, of the shifts' difference.
-
-    The two states share B = p.p and w = p.v. With kappa = w / B the second one has
-    y -> 2 v_y / kappa - 3 y, v_y -> v_y + kappa times the change of y, and likewise for z.
-
-    Parameters
-    ----------
-    order : int
-        From 0 to 3, the first that is not zero.
-
-    Examples
-    --------
-    >>> prove_twin_agrees(0)
-    0
-    """
-    square, w, y, z, v_y, v_z = sp.symbols("B w y z v_y v_z", real=True)
-    s_y, s_z = sp.symbols("s_y s_z", real=True)
-    kappa = w / square
-
-    def shift(y, z, v_y, v_z):
-        distance = square + SIZE**2 * (s_y**2 + s_z**2) - 2 * SIZE * (s_y * y + s_z * z)
-        return (SIZE * (s_y * v_y + s_z * v_z) - w) / sp.sqrt(distance)
-
-    twin_y, twin_z = 2 * v_y / kappa - 3 * y, 2 * v_z / kappa - 3 * z
-    twin = twin_y, twin_z, v_y + kappa * (twin_y - y), v_z + kappa * (twin_z - z)
-    difference = shift(*twin) - shift(y, z, v_y, v_z)
-    return sp.simplify(sp.diff(difference, SIZE, order).subs(SIZE, 0) / sp.factorial(order))

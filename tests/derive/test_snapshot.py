@@ -1,4 +1,4 @@
-"""Five coefficients of a ring's snapshot, and the twin of a plane array, in symbols."""
+"""Five coefficients of a ring's snapshot, in symbols."""
 
 import numpy as np
 import pytest
@@ -40,12 +40,3 @@ def test_shifts_in_proportion_to_ranges_leave_three_directions(harmonics):
     k = sp.Symbol("k")
     state = {w: -k * A, v_y: -2 * k * y, v_z: -2 * k * z}
     assert snapshot.rank(harmonics.subs(state, simultaneous=True)) == 3
-
-
-@pytest.mark.parametrize("order", [0, 1, 2])
-def test_the_twin_agrees_to_second_order(order):
-    assert snapshot.prove_twin_agrees(order) == 0
-
-
-def test_the_twin_does_not_agree_to_third_order():
-    assert snapshot.prove_twin_agrees(3) != 0

@@ -15,9 +15,10 @@ from numba import njit
 
 from dopplerlib.derive import ekf as derive
 from dopplerlib.derive import links as moving
+from dopplerlib.derive import ring_coordinates as ring
 from dopplerlib.derive.doppler import GRADIENT, STATE, gradient_block
 from dopplerlib.derive.printers import c99_function, javascript_function
-from dopplerlib.kernels import doppler, ekf, links
+from dopplerlib.kernels import doppler, ekf, links, ring_coordinates
 
 RUNS, SENSORS, LANES = 37, 6, 16  # 37 leaves the last group of lanes partly empty
 BLOCKS = {block.name: block for block in derive.blocks()}
@@ -25,6 +26,8 @@ KERNELS = {name: getattr(ekf, name) for name in BLOCKS}
 WITH_SENSOR = {"linearize", "project", "update"}
 BLOCKS["doppler_shift_and_gradient"] = gradient_block()
 BLOCKS["leg_shift_and_gradient"] = moving.gradient_block()
+RING = {block.name: block for block in ring.blocks()}
+BLOCKS |= RING
 
 PLACES = {}  # array and row of each symbol, by name
 for _array, _start, _symbols in [
@@ -247,4 +250,30 @@ def test_shift_and_gradient_are_the_same_bits_in_every_language(function, langua
         got = np.array([compiled(*row) for row in rows])
     else:
         got = np.array(request.getfixturevalue(language)(function.__name__, rows))
+    assert_same_bits(got, expected)
+
+
+def ring_values(rng, runs):
+    """Return values of all inputs of the blocks of ring coordinates, by name, of true states."""
+    inputs = {symbol.name for block in RING.values() for symbol in block.inputs}
+    values = {name: rng.normal(size=runs) for name in sorted(inputs)}
+    values |= {name: np.abs(values[name]) for name in ("T", "r", "x", "doppler_per_speed")}
+    state = [values[symbol.name] for symbol in STATE]
+    *seen, rho = ring_coordinates.to_coordinates(*state, values["r"])
+    names = [symbol.name for symbol in ring.COORDINATES[:5]]
+    values |= dict(zip(names, seen, strict=True))
+    return values | {"rho": rho, "u": 1 / rho, "V": np.sum(np.square(state[3:]), axis=0)}
+
+
+@pytest.mark.parametrize("language", ["c99", "javascript", "numpy"])
+@pytest.mark.parametrize("name", RING)
+def test_ring_coordinates_are_the_same_bits_in_every_language(name, language, request):
+    values = ring_values(np.random.default_rng(7), 200)
+    rows = np.transpose([values[symbol.name] for symbol in RING[name].inputs]).tolist()
+    function = getattr(ring_coordinates, name)
+    expected = np.array([function(*row) for row in rows])
+    if language == "numpy":
+        got = np.stack(function(*np.transpose(rows)), axis=1)
+    else:
+        got = np.array(request.getfixturevalue(language)(name, rows))
     assert_same_bits(got, expected)
