@@ -15,6 +15,7 @@ from . import covariances, sigma_points
 
 _LEAST = 0.15  # of the radius: nearer to the plane of the sensors no state is taken
 _FARTHEST = 46.0  # ln of rho in m
+_CLEAR = 1e-3  # square of the distance of target and sensor over rho, at least
 # Where the derivatives of the state by the coordinates are not zero, in the order of the kernel.
 _SLOPES = [(0, 0), (0, 1), (0, 5), (1, 0), (1, 5), (2, 1), (2, 5), *((3, j) for j in range(6)),
            (4, 2), (4, 5), (5, 3), (5, 5)]  # fmt: skip
@@ -161,8 +162,20 @@ class RingModel:
         return self._measured(xi)[..., 1:]
 
     def _measured(self, xi):
-        *seen, ell = np.moveaxis(self._held(xi)[..., None, :], -1, 0)
+        """Return shift and gradient (..., N, 7) at all sensors.
+
+        Range plays no part in what a ring measures, not even where there is no state: only as much
+        is taken from eta as keeps all sensors at a distance.
+        """
+        xi = _checks.moderate("xi", xi, (6,)).copy()
+        xi[..., 5] = np.clip(xi[..., 5], *self._scales)
         _, s_y, s_z = self.array.positions.T
+        off = (s_y**2 + s_z**2 - self.radius**2) * np.exp(-2 * xi[..., 5, None])
+        beside = 2 * (xi[..., 0, None] * s_y + xi[..., 1, None] * s_z)
+        most = 1 + off - _CLEAR
+        near = beside > most
+        xi[..., :2] *= np.where(near, most / np.where(near, beside, 1.0), 1.0).min(-1)[..., None]
+        *seen, ell = np.moveaxis(xi[..., None, :], -1, 0)
         shift_and_gradient = kernel.shift_and_gradient(
             *seen, np.exp(-ell), s_y, s_z, self.radius, self.array.doppler_per_speed
         )
@@ -187,11 +200,16 @@ class RingModel:
             slopes[..., i, j] = slope
         return *values[:6], slopes
 
+    @property
+    def _scales(self):
+        """Least and largest ln rho."""
+        return np.log(1.001 * self.radius**2 * (1 + _LEAST**2)) / 2, _FARTHEST
+
     def _held(self, xi):
         """Return coordinates of states with x >= `_LEAST` times the radius."""
         held = _checks.moderate("xi", xi, (6,)).copy()
+        held[..., 5] = np.clip(held[..., 5], *self._scales)
         least = self.radius**2 * (1 + _LEAST**2)  # rho^2 on the axis
-        held[..., 5] = np.clip(held[..., 5], np.log(1.001 * least) / 2, _FARTHEST)
         square = np.exp(2 * held[..., 5])
         across = np.hypot(held[..., 0], held[..., 1])
         most = np.sqrt(square - least) / square
