@@ -2,6 +2,7 @@
 from . import alarm as alarm
 from . import alternatives as alternatives
 from . import baseband as baseband
+from . import collision as collision
 from . import phase_fit as phase_fit
 from . import receiver as receiver
 from . import ridges as ridges
