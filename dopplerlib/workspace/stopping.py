@@ -116,7 +116,7 @@ class Courses:
         --------
         >>> courses = draw_courses(20, "any", rng=np.random.default_rng(1))
         >>> len(courses.part(courses.kind == "passing").entry)
-        5
+        2
         """
         _checks.exact_shape("rows", rows, self.entry.shape)
         return Courses(*(getattr(self, name)[rows] for name in _FIELDS))
