@@ -3,6 +3,7 @@
 Tests of what all of them share (`tests/test_edges.py`) change one argument of such a call.
 """
 
+import copy
 import inspect
 from importlib import import_module
 from pkgutil import iter_modules
@@ -129,13 +130,16 @@ COVARIANCES = ("P", "P0", "P1", "P2", "Q", "R", "R1", "R2")
 ITERABLES = ("wrap", "scans", "keep", "box", "models")
 BOOLEANS = ("accept", "in_plane", "there")
 NOT_NUMBERS = (
-    "points", "array", "start", "manager", "h", "gate", "state", "method", *ITERABLES, *BOOLEANS
+    "points", "array", "start", "manager", "h", "gate", "state", "method", "rng",
+    *ITERABLES, *BOOLEANS,
 )  # fmt: skip
 
 
 def call(function, **changed):
     """Return what the valid call gives with some arguments changed, or left out if None."""
     arguments = CALLS[function] | changed
+    if isinstance(arguments.get("rng"), np.random.Generator):
+        arguments["rng"] = copy.deepcopy(arguments["rng"])  # every call draws the same
     return function(**{name: value for name, value in arguments.items() if value is not None})
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from dopplerlib import RadarArray, ekf, ml_frequency, ml_initialize
 from dopplerlib.estimation._ekf_loop import LANES
 from dopplerlib.estimation.gaussian_sum import gaussian_sum
+from dopplerlib.estimation.importance_sampling import importance_posterior
 from dopplerlib.evaluation.path_bounds import path_crlb
 from dopplerlib.signal.validity import valid_samples
 from dopplerlib.systems import valarmathi
@@ -28,6 +29,9 @@ def main(argv=None):
         ekf(z, array, start, np.eye(6), 0.001, 1.0, 1.0)
     ml_initialize(z, array, 1.0, 0.001, box)
     gaussian_sum(z[0], array, start, np.eye(6), 0.001, 1.0, 1.0)
+    for sigma_a in (0.0, 1.0):
+        rng = np.random.default_rng(1)
+        importance_posterior(z[0], array, start, np.eye(6), 0.001, sigma_a, 1.0, rng=rng, draws=100)
     path_crlb(np.ones((2, 6)), array, 1.0, np.eye(6))
     ml_frequency(np.ones(16, complex), 1.0)
     valid_samples(np.arange(64.0))

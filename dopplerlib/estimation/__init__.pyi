@@ -8,6 +8,7 @@ from . import gaussian as gaussian
 from . import gaussian_sum as gaussian_sum
 from . import imm as imm
 from . import imm_records as imm_records
+from . import importance_sampling as importance_sampling
 from . import initial_estimate as initial_estimate
 from . import linear_kalman as linear_kalman
 from . import maximum_likelihood as maximum_likelihood
