@@ -118,7 +118,7 @@ def importance_posterior(
 
     Examples
     --------
-    After 20 ms a ring of 0.2 m knows the distance of a target to two decimeters, no better:
+    After 20 ms a ring of 0.2 m knows the distance of a target to a decimeter, no better:
 
     >>> from dopplerlib import doppler_shift
     >>> array, rng = RadarArray.ring(6, 0.2), np.random.default_rng(1)
@@ -128,7 +128,7 @@ def importance_posterior(
     >>> prior = [0.8, 0, 0, -0.75, 0, 0], np.diag([0.2, 0.25, 0.25, 0.25, 0.25, 0.25]) ** 2
     >>> found = importance_posterior(z, array, *prior, 1e-3, 0.0, 0.4, rng=rng, draws=400)
     >>> round(float(found.P[0, 0] ** 0.5), 1)
-    0.2
+    0.1
     """
     z = _measurements(z, array)
     batch, (K, N) = z.shape[:-2], z.shape[-2:]
