@@ -15,6 +15,7 @@ from dopplerlib.estimation import (
     colored_errors,
     extended_kalman,
     extended_update,
+    gaussian_sum,
     imm,
     linear_kalman,
     maximum_likelihood,
@@ -94,6 +95,10 @@ CALLS = {
         "z": shifts, "array": array, "x0": state, "P0": 0.01 * np.eye(6), "T": 0.001,
         "sigma_a": 0.4, "sigma_f": 0.4, "keep": ("P", "S", "innovation"), "workers": 1,
     },
+    gaussian_sum.gaussian_sum_online: {
+        "array": RadarArray.ring(3, 0.2), "x0": [0.8, 0, 0, -0.7, 0, 0], "P0": 0.01 * np.eye(6),
+        "T": 0.001, "sigma_a": 0.4, "sigma_f": 0.4, "block": 1,
+    },
     extended_kalman.gate_bounds: {"gate": "upper", "sensors": 6, "gate_probability": 0.9},
     maximum_likelihood.ml_initialize: {
         "z": shifts, "array": array, "sigma_f": 0.1, "T": 0.001, "box": box, "workers": 1,
@@ -146,7 +151,7 @@ def call(function, **changed):
 def results(value):
     """Return the arrays and numbers of a result, of records and lists of them as well.
 
-    A function is told by its value at a state with an error beside it.
+    A function is told by its value at a state with an error beside it, or at three shifts.
     """
     if callable(value):
         return results(value(np.arange(1.0, n + m + 1)))

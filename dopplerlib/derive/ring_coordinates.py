@@ -1,13 +1,14 @@
 """Coordinates in which a ring of sensors sees five numbers, and the sixth is a scale of its own.
 
-All sensors stand in the plane x = 0, and r is a radius: that of their circle, or another one. With
-rho^2 = p.p + r^2 the coordinates of a state with x > 0 are
+The sensors stand in the plane x = 0 or close to it, and r is a radius: that of their circle, or
+another one. With rho^2 = p.p + r^2 the coordinates of a state with x > 0 are
 
     eta = (y, z) / rho^2 in 1/m,  beta = (v_y, v_z) / rho in 1/s,  b = p.v / rho in m/s,  ln rho.
 
 The Doppler shift of a sensor on the circle is a function of the first five. Its derivative by
 ln rho is zero at *every* state, so no linearization, wherever it is taken, invents knowledge of the
-range. Bearings have such coordinates, too, the modified polar ones (Aidala and Hammel 1983).
+range. For other sensors it is small: of the order of (s.s - r^2) / rho^2, or of s_x x / rho^2.
+Bearings have such coordinates, too, the modified polar ones (Aidala and Hammel 1983).
 
 Every ``prove_...`` function returns what is zero if the claim is proved. Range rho is a symbol of
 its own, by which `_total` differentiates: then all is a rational function, which SymPy decides.
@@ -27,7 +28,7 @@ from .ring import RADIUS
 COORDINATES = sp.symbols("eta_y eta_z beta_y beta_z b ell", real=True)
 INVERSE_RANGE = sp.Symbol("u", positive=True)  # 1 / rho = exp(-ell)
 AXES = "etay", "etaz", "betay", "betaz", "b", "ell"
-GRADIENT = sp.symbols([f"h_{axis}" for axis in AXES], real=True)
+GRADIENT = sp.symbols([f"h_{axis}" for axis in (*AXES, "x", "vx")], real=True)
 SIZE = sp.Symbol("epsilon", positive=True)  # scale of the array
 
 # Speed squared, and the range after an interval over that before it.
@@ -66,20 +67,28 @@ def rates():
 
 
 def shift_in_coordinates():
-    """Return the Doppler shift of a sensor in the plane x = 0 as a function of `COORDINATES`.
+    """Return the Doppler shift of a sensor as a function of `COORDINATES`, x and v_x.
 
-    From (s - p).(s - p) = rho^2 - 2 s.p + s.s - r^2 and (s - p).v = s.v - p.v, over rho.
+    From (s - p).(s - p) = rho^2 - 2 s.p + s.s - r^2 and (s - p).v = s.v - p.v, over rho. Of a
+    sensor in the plane x = 0 it is one of `COORDINATES`.
     """
-    s, eta, beta = _sensor(), sp.Matrix(COORDINATES[:2]), sp.Matrix(COORDINATES[2:4])
-    off = (s.dot(s) - RADIUS**2) * INVERSE_RANGE**2  # zero on the circle
-    return DOPPLER_PER_SPEED * (s.dot(beta) - COORDINATES[4]) / sp.sqrt(1 - 2 * s.dot(eta) + off)
+    (s_x, *across), u, b = SENSOR, INVERSE_RANGE, COORDINATES[4]
+    s, eta, beta = sp.Matrix(across), sp.Matrix(COORDINATES[:2]), sp.Matrix(COORDINATES[2:4])
+    x, v_x = STATE[0], STATE[3]
+    off = (s_x**2 + s.dot(s) - RADIUS**2 - 2 * s_x * x) * u**2  # zero on the circle
+    closing = s.dot(beta) + s_x * v_x * u - b
+    return DOPPLER_PER_SPEED * closing / sp.sqrt(1 - 2 * s.dot(eta) + off)
 
 
 def gradient_in_coordinates():
-    """Return the derivatives of `shift_in_coordinates` by `COORDINATES`."""
+    """Return the derivatives of `shift_in_coordinates` by `COORDINATES`, x and v_x.
+
+    The latter two are functions of the coordinates, with the slopes of `inverse_jacobian`.
+    """
     shift = shift_in_coordinates()
     by_scale = -INVERSE_RANGE * sp.diff(shift, INVERSE_RANGE)  # u = exp(-ell)
-    return [*(sp.diff(shift, component) for component in COORDINATES[:5]), by_scale]
+    ahead = (sp.diff(shift, STATE[i]) for i in (0, 3))
+    return [*(sp.diff(shift, component) for component in COORDINATES[:5]), by_scale, *ahead]
 
 
 def moved():
@@ -169,23 +178,22 @@ def prove_shift():
 
     The signs of the two agree where their numerators do, which `prove_sign` shows.
     """
-    s = sp.Matrix([0, *_sensor()])
+    s = sp.Matrix(SENSOR)
     from_state = DOPPLER_PER_SPEED**2 * (s - _P).dot(_V) ** 2 / (s - _P).dot(s - _P)
     return _decided(_in_state(shift_in_coordinates() ** 2) - from_state)
 
 
 def prove_sign():
     """Return rho times the numerator of the shift in coordinates, minus that of the shift."""
-    s, beta = _sensor(), sp.Matrix(COORDINATES[2:4])
-    numerator = _in_state(s.dot(beta) - COORDINATES[4]) * RANGE
-    return _decided(numerator - (sp.Matrix([0, *s]) - _P).dot(_V))
+    numerator = sp.numer(_in_state(shift_in_coordinates() / DOPPLER_PER_SPEED)) * RANGE
+    return _decided(numerator - (sp.Matrix(SENSOR) - _P).dot(_V))
 
 
 def prove_scale_is_unseen():
-    """Return the derivative by ln rho of the shift of a sensor on the circle."""
+    """Return the derivatives by ln rho, x and v_x of the shift of a sensor on the circle."""
     y, z = SENSOR[1:]
-    gradient = gradient_in_coordinates()[5].subs(RADIUS, sp.sqrt(y**2 + z**2))
-    return sp.simplify(gradient)
+    circle = {RADIUS: sp.sqrt(y**2 + z**2), SENSOR[0]: 0}
+    return sp.Matrix([sp.simplify(slope.subs(circle)) for slope in gradient_in_coordinates()[5:]])
 
 
 def prove_rates():
@@ -232,7 +240,7 @@ def prove_twin(order: Annotated[int, up_to(3, least=0)]) -> sp.Expr:
     >>> prove_twin(2)
     0
     """
-    grown = {s: SIZE * s for s in SENSOR} | {RADIUS: SIZE * RADIUS}
+    grown = {s: SIZE * s for s in SENSOR} | {SENSOR[0]: 0, RADIUS: SIZE * RADIUS}
     shift = shift_in_coordinates().subs(grown, simultaneous=True)
     twin = dict(zip(COORDINATES, twin_in_coordinates(), strict=True))
     difference = shift.subs(twin, simultaneous=True) - shift
@@ -240,21 +248,22 @@ def prove_twin(order: Annotated[int, up_to(3, least=0)]) -> sp.Expr:
 
 
 def shift_block():
-    """Return the program of the shift of a sensor in the plane x = 0, and of its gradient."""
+    """Return the program of the shift of a sensor, and of its gradient."""
     root = sp.Symbol("inverse_root", positive=True)
     under = sp.denom(shift_in_coordinates()) ** 2
     values = [shift_in_coordinates(), *gradient_in_coordinates()]
     named = [sp.factor_terms(value.subs(under, root**-2)) for value in values]
     return Block(
         name="shift_and_gradient",
-        summary="Doppler shift in Hz and its derivatives by eta, beta, b and ln rho.",
-        inputs=(*COORDINATES[:5], INVERSE_RANGE, *SENSOR[1:], RADIUS, DOPPLER_PER_SPEED),
+        summary="Doppler shift in Hz; derivatives by eta, beta, b and ln rho, and by x and v_x.",
+        inputs=(*COORDINATES[:5], INVERSE_RANGE, STATE[0], STATE[3], *SENSOR, RADIUS,
+                DOPPLER_PER_SPEED),
         stages=(
             Stage("rho over the distance of sensor and target", [(root, 1 / sp.sqrt(under))]),
             Stage("shift and gradient", list(zip((SHIFT, *GRADIENT), named, strict=True))),
         ),
         outputs=(SHIFT, *GRADIENT),
-    )
+    )  # fmt: skip
 
 
 def to_coordinates_block():
@@ -332,10 +341,6 @@ def _entries(prefix, rows, matrix):
         for j, axis in enumerate(AXES)
         if matrix[i, j] != 0
     ]
-
-
-def _sensor():
-    return sp.Matrix(SENSOR[1:])
 
 
 def _in_state(expression):

@@ -1,4 +1,4 @@
-"""A Gaussian sum over a record, compiled.
+"""A Gaussian sum along a record, compiled.
 
 Member m has the coordinates ``x[m]`` (6), the covariance ``P[m]`` (6, 6) and the logarithm of its
 weight ``weight[m]``. While there are many, samples are taken in blocks, and the state belongs to
@@ -8,16 +8,17 @@ the middle of its block: the mean of a few shifts is that of the middle.
 import numpy as np
 
 from .._compile import cached_njit, fingerprint
-from ..kernels import ring_coordinates as kernel
+from ..kernels import doppler, ring_coordinates
 from . import _gaussian_sum_merge, _gaussian_sum_start, _ring_member
 from ._gaussian_sum_merge import drop, merge
-from ._gaussian_sum_start import start
+from ._gaussian_sum_start import settle, start
 from ._ring_member import LOST, compiled, factor, predict, put, put_square, state_at, update
 
 ALONE = 2  # members with which samples are taken one by one
 _BETWEEN = 2  # blocks from one merging to the next
 _ITERATIONS = 2  # of an update
 _MARGIN = 12.0  # by which a window may be less likely than the best, in logarithms
+_SETTLING, _FEW = 30, 10  # blocks and members at the first new start, see `gaussian_sum`
 
 
 @compiled
@@ -98,11 +99,11 @@ def moments(x, P, weight, count, T, noise, r, mean, covariance, shares, means, c
 
 
 @compiled
-def _scan(z, weights, first, length, scan, variance):
+def _scan(z, weights, length, scan, variance):
     """Write the weighted mean of each sensor over `length` samples, and its variance."""
     for n in range(z.shape[1]):
         total = seen = 0.0
-        for k in range(first, first + length):
+        for k in range(length):
             if not np.isnan(z[k, n]):
                 total += weights[k, n] * z[k, n]
                 seen += weights[k, n]
@@ -117,56 +118,6 @@ def _squares(m):
 
 
 @compiled
-def _track(z, weights, positions, r, c, T, block, noise, mean, information, grid, widths, least,
-           lightest, loss, every, out_x, out_P, out_members, out_weights, out_means,
-           out_covariances):  # fmt: skip
-    """Filter one record (K, N) of shifts; `noise` (C, 6) has the columns of that of one step."""
-    K, N = z.shape
-    size = len(grid)
-    x, P, weight = np.empty((size, 6)), np.empty((size, 6, 6)), np.empty(size)
-    state, G, F, spare = np.empty(6), np.zeros((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    at, before, P_before = np.empty(6), np.empty(6), np.empty((6, 6))
-    g, b, L = np.empty(6), np.empty(6), np.zeros((6, 6))
-    scan, variance = np.empty(N), np.empty(N)
-    count, first, last, cycles = 0, 0, 0.0, 0
-    while first < K:
-        length = 1 if cycles > 1 and count <= ALONE else block
-        length = min(length, K - first)
-        _scan(z, weights, first, length, scan, variance)
-        middle = first + 0.5 * (length - 1)
-        if cycles == 0:
-            count = start(scan, variance, positions, r, c, mean, information, grid, widths, least,
-                          _MARGIN, x, P, weight)  # fmt: skip
-        else:
-            steps = middle - last
-            push = _columns(noise, steps, T)
-            for m in range(count):
-                if predict(x[m], P[m], steps * T, push, r, least, state, G, F, spare):
-                    weight[m] += update(x[m], P[m], scan, variance, positions, r, c, _ITERATIONS,
-                                        at, before, P_before, g, b)  # fmt: skip
-                else:
-                    weight[m] = LOST
-        count = drop(x, P, weight, count, lightest)
-        if count == 0:
-            break
-        if cycles % _BETWEEN == 1:
-            count = merge(x, P, weight, count, loss)
-        # Outputs at the samples every - 1, 2 every - 1, ... of this block.
-        for o in range(first // every, (first + length) // every):
-            k = (o + 1) * every - 1
-            # A velocity in the block less the mean of its velocities has this variance, in steps.
-            i = k - first
-            apart = (_squares(i) + _squares(length - 1 - i)) / length**2
-            moments(x, P, weight, count, (k - middle) * T, _columns(noise, apart, T), r, out_x[o],
-                    out_P[o], out_weights[o], out_means[o], out_covariances[o], state, G,
-                    L)  # fmt: skip
-            out_members[o] = count
-        cycles += 1
-        last = middle
-        first += length
-
-
-@compiled
 def _columns(noise, steps, T):
     """Return the columns of the noise that gathers over some steps, for columns of one."""
     columns = np.empty(noise.shape)
@@ -178,24 +129,91 @@ def _columns(noise, steps, T):
 
 
 def _cached(compiled_in):
-    """Return the filter of many records, compiled once for all processes."""
+    """Return the filter of one target, compiled once for all processes."""
 
     @cached_njit
-    def filter_records(
-        z, weights, positions, r, c, T, block, noise, mean, information, grid, widths, least,
-        lightest, loss, every, x, P, members, mixture, means, covariances,
-    ):  # fmt: skip
+    def track(setting, bank, z, weights, every, out):
+        """Take the next samples (K, N) of a target; after each `every` of them, write estimates.
+
+        All that is kept from call to call is in the bank; so samples may come one by one.
+        """
         compiled_in  # noqa: B018  (see fingerprint)
-        for run in range(len(z)):
-            _track(
-                z[run], weights, positions, r, c, T, block, noise, mean, information, grid, widths,
-                least, lightest, loss, every, x[run], P[run], members[run],
-                mixture[run], means[run], covariances[run],
-            )  # fmt: skip
+        positions, r, c, T = setting.positions, setting.r, setting.c, setting.T
+        noise, flat, least = setting.noise, setting.flat, setting.least
+        mean, information = setting.mean, setting.information
+        x, P, weight = bank.x, bank.P, bank.weight
+        held, held_weights = bank.samples, bank.weights
+        scans, variances, middles = bank.scans, bank.variances, bank.middles
+        state, G, F, spare = np.empty(6), np.zeros((6, 6)), np.empty((6, 6)), np.empty((6, 6))
+        at, before, P_before = np.empty(6), np.empty(6), np.empty((6, 6))
+        g, b, L = np.empty(6), np.empty(6), np.zeros((6, 6))
+        count, taken, blocks, filled, length, last, settling = bank.numbers
+        evidence, constant = bank.logs
+        exact = len(noise) == 0
+        for k in range(len(z)):
+            if count == 0 and blocks > 0:
+                break  # all members have been lost
+            put(held[filled], z[k])
+            put(held_weights[filled], weights[k])
+            taken += 1
+            filled += 1
+            if filled == length:
+                # Of what goes straight all scans are kept, else the newest only.
+                s = blocks if exact and blocks < len(scans) else len(scans) - 1
+                scan, variance = scans[s], variances[s]
+                _scan(held, held_weights, length, scan, variance)
+                for n in range(len(scan)):
+                    if not np.isnan(scan[n]):
+                        constant -= 0.5 * np.log(2 * np.pi * variance[n])
+                middles[s] = (taken - 0.5 * (length + 1)) * T
+                if blocks == 0:
+                    count = start(scans[s:s + 1], variances[s:s + 1], middles[s:s + 1], positions,
+                                  r, c, mean, information, setting.grid, setting.widths, least,
+                                  _MARGIN, x, P, weight)  # fmt: skip
+                    evidence = setting.share + constant
+                else:
+                    steps = 0.5 * (last + length)
+                    push = _columns(noise, steps, T)
+                    for m in range(count):
+                        if predict(x[m], P[m], steps * T, push, r, least, state, G, F, spare):
+                            weight[m] += update(x[m], P[m], scan, variance, positions, r, c, flat,
+                                                _ITERATIONS, state, G, at, before, P_before, g,
+                                                b)  # fmt: skip
+                        else:
+                            weight[m] = LOST
+                count, gained = drop(x, P, weight, count, setting.lightest)
+                evidence += gained
+                if blocks % _BETWEEN == 1:
+                    count = merge(x, P, weight, count, setting.loss)
+                blocks += 1
+                if exact and max(settling, _SETTLING) <= blocks < len(scans) and count <= _FEW:
+                    modes = settle(scans[:blocks], variances[:blocks], middles[:blocks], middles[s],
+                                   positions, r, c, mean, information, least, x, P, weight,
+                                   count)  # fmt: skip
+                    if modes > 0:
+                        count, gained = drop(x, P, weight, modes, setting.lightest)
+                        evidence = setting.prior + constant + gained
+                    settling = blocks + blocks // 4
+                last, filled = length, 0
+                if blocks > 1 and count <= ALONE and not exact:
+                    length = 1
+                else:
+                    length = setting.block
+            if (k + 1) % every == 0 and count > 0:
+                # A velocity less the mean of those of its block has this variance, in steps.
+                o, apart = k // every, _squares(last - 1) / last**2 + filled
+                ahead = (0.5 * (last - 1) + filled) * T
+                push = _columns(noise, apart, T)
+                moments(x, P, weight, count, ahead, push, r, out.x[o], out.P[o], out.weights[o],
+                        out.means[o], out.covariances[o], state, G, L)  # fmt: skip
+                out.members[o], out.evidence[o] = count, evidence
+        for i, value in enumerate((count, taken, blocks, filled, length, last, settling)):
+            bank.numbers[i] = value
+        bank.logs[0], bank.logs[1] = evidence, constant
 
-    return filter_records
+    return track
 
 
-filter_records = _cached(
-    fingerprint(kernel, _ring_member, _gaussian_sum_start, _gaussian_sum_merge)
+track = _cached(
+    fingerprint(doppler, ring_coordinates, _ring_member, _gaussian_sum_start, _gaussian_sum_merge)
 )

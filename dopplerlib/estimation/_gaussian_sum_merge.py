@@ -7,12 +7,15 @@ from ._ring_member import LOST, compiled, factor, put, put_square
 
 @compiled
 def drop(x, P, weight, count, least):
-    """Bring the weights to a sum of one, without those below `least`; return the number left."""
+    """Bring the weights to a sum of one, without those below `least`.
+
+    Return the number left, and the logarithm of the sum before.
+    """
     top = LOST
     for m in range(count):
         top = max(top, weight[m])
     if top == LOST:
-        return 0
+        return 0, LOST
     total = 0.0
     for m in range(count):
         total += np.exp(weight[m] - top)
@@ -24,12 +27,12 @@ def drop(x, P, weight, count, least):
             put_square(P[kept], P[m])
             weight[kept] = weight[m]
             kept += 1
-    total = 0.0
+    left = 0.0
     for m in range(kept):
-        total += np.exp(weight[m] - top)
+        left += np.exp(weight[m] - top)
     for m in range(kept):
-        weight[m] -= top + np.log(total)
-    return kept
+        weight[m] -= top + np.log(left)
+    return kept, total
 
 
 @compiled

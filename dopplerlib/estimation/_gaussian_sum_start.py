@@ -1,49 +1,93 @@
-"""Start of a Gaussian sum, compiled: one member from each window of a grid."""
+"""Modes of the posterior of a target at constant velocity, compiled: start and new start.
+
+A Gaussian sum starts with one member from each window of a grid; and what goes straight can be
+fitted again to all that was measured, member by member.
+"""
 
 import numpy as np
 
-from ._ring_member import LOST, compiled, factor, measure, put, solve, state_at
+from ..kernels import doppler as kernel
+from ._ring_member import LOST, compiled, factor, inline, put, solve, state_at
+
+_STEPS, _HALVINGS, _GAIN = 4, 5, 1e-3  # of a descent
+_EQUAL = 0.1  # squared distance of two modes that are one, in deviations
+
+_shift = inline(kernel.doppler_shift_and_gradient)
 
 
 @compiled
-def objective(x, z, variance, positions, r, c, mean, information, window, least,
-              state, G, g, H, row):  # fmt: skip
-    """Return minus the log density of measurements, prior and window at `x`; g and H of it.
+def objective(x, scans, variances, middles, now, positions, r, c, mean, information, window, least,
+              state, G, g, H, A, B):  # fmt: skip
+    """Return minus the log density of scans, prior and window at `x`; g and H of it.
 
-    `window` has centers and inverse variances of eta and ln rho. H is that of Gauss and Newton.
+    The scans (S, N) are of the times `middles`, the prior is of the first of them, and `x` of the
+    time `now`. `window` has centers and inverse variances of eta and ln rho. H is that of Gauss and
+    Newton. A and B (6, 6) are spare.
     """
     state_at(x, r, state, G)
     if not state[0] > least:
         return np.inf
-    cost, u = 2 * np.log(state[0]) - 9 * x[5], np.exp(-x[5])
+    cost = 2 * np.log(state[0]) - 9 * x[5]
+    row, slope = B[0], B[1]
     for i in range(6):
+        slope[i] = 0.0
         for j in range(6):
-            H[i, j] = 0.0
-        g[i] = 2 * G[0, i] / state[0]
-    g[5] -= 9
-    for n in range(len(z)):
-        if np.isnan(z[n]):
-            continue
-        residual = measure(x, u, positions[n], r, c, row) - z[n]
-        cost += 0.5 * residual * residual / variance[n]
-        for i in range(6):
-            g[i] += row[i] * residual / variance[n]
-            for j in range(6):
-                H[i, j] += row[i] * row[j] / variance[n]
-    # prior in the state: G' information (state - mean)
-    for k in range(6):
+            A[i, j] = 0.0
+    for s in range(len(scans)):
+        age = now - middles[s]
+        for n in range(scans.shape[1]):
+            if np.isnan(scans[s, n]):
+                continue
+            shift, row[0], row[1], row[2], row[3], row[4], row[5] = _shift(
+                state[0] - age * state[3], state[1] - age * state[4], state[2] - age * state[5],
+                state[3], state[4], state[5],
+                positions[n, 0], positions[n, 1], positions[n, 2], c,
+            )  # fmt: skip
+            residual, w = shift - scans[s, n], 1 / variances[s, n]
+            cost += 0.5 * w * residual * residual
+            for i in range(3):
+                row[3 + i] -= age * row[i]
+            for i in range(6):
+                scaled = w * row[i]
+                slope[i] += scaled * residual
+                for j in range(i + 1):
+                    A[i, j] += scaled * row[j]
+    age = now - middles[0]
+    for i in range(3):
+        row[i] = state[i] - age * state[3 + i] - mean[i]
+        row[3 + i] = state[3 + i] - mean[3 + i]
+    for i in range(6):
         s = 0.0
-        for m in range(6):
-            s += information[k, m] * (state[m] - mean[m])
-        cost += 0.5 * s * (state[k] - mean[k])
-        for i in range(6):
-            g[i] += G[k, i] * s
+        for j in range(6):
+            s += information[i, j] * row[j]
+        cost += 0.5 * s * row[i]
+        slope[i] += s
+        if i < 3:
+            slope[3 + i] -= age * s
+    for i in range(3):
+        for j in range(3):
+            A[i, j] += information[i, j]
+            A[3 + i, j] += information[3 + i, j] - age * information[i, j]
+            A[3 + i, 3 + j] += information[3 + i, 3 + j] + age * (
+                age * information[i, j] - information[3 + i, j] - information[i, 3 + j]
+            )
+    for i in range(6):
+        g[i] = 2 * G[0, i] / state[0]
+        for k in range(6):
+            g[i] += G[k, i] * slope[k]
+    g[5] -= 9
     for k in range(6):
-        for m in range(6):
-            if information[k, m] != 0.0:
-                for i in range(6):
-                    for j in range(6):
-                        H[i, j] += G[k, i] * information[k, m] * G[m, j]
+        for j in range(6):
+            s = 0.0
+            for i in range(6):
+                s += A[max(k, i), min(k, i)] * G[i, j]
+            B[k, j] = s
+    for i in range(6):
+        for j in range(i + 1):
+            s = 0.0
+            for k in range(6):
+                s += G[k, i] * B[k, j]
+            H[i, j] = H[j, i] = s
     for w, i in enumerate((0, 1, 5)):
         d = x[i] - window[w, 0]
         cost += 0.5 * window[w, 1] * d * d
@@ -53,7 +97,7 @@ def objective(x, z, variance, positions, r, c, mean, information, window, least,
 
 
 @compiled
-def downhill(L, g, step):
+def _downhill(L, g, step):
     """Write the step of Newton, -inv(L L') g, to `step`."""
     for i in range(6):
         step[i] = -g[i]
@@ -61,88 +105,127 @@ def downhill(L, g, step):
 
 
 @compiled
-def start(z, variance, positions, r, c, mean, information, grid, widths, least, margin, x, P,
-          weight):  # fmt: skip
+def _descend(x, scans, variances, middles, now, positions, r, c, mean, information, window, least,
+             P, state, G, g, H, A, B, L, step, new):  # fmt: skip
+    """Move `x` to the mode nearby, write its covariance to `P`, and return Laplace's log weight."""
+    cost, moving = np.inf, False
+    put(new, x)
+    # The first evaluation is that at x itself, and no descent.
+    for tried in range(_STEPS + 1):
+        share, before = 1.0, cost
+        for _ in range(_HALVINGS):
+            if moving:
+                for i in range(6):
+                    new[i] = x[i] + share * step[i]
+            cost_new = objective(new, scans, variances, middles, now, positions, r, c, mean,
+                                 information, window, least, state, G, g, H, A, B)  # fmt: skip
+            if cost_new < cost:
+                break
+            share *= 0.5
+        if not cost_new < cost:
+            break
+        put(x, new)
+        cost, moving = cost_new, True
+        determinant = factor(H, L)
+        if np.isnan(determinant):
+            return LOST
+        if before - cost < _GAIN or tried == _STEPS:
+            break
+        _downhill(L, g, step)
+    if not np.isfinite(cost):
+        return LOST
+    for j in range(6):
+        for i in range(6):
+            step[i] = 1.0 if i == j else 0.0
+        solve(L, step)
+        put(P[j], step)
+    return -cost - 0.5 * determinant
+
+
+@compiled
+def start(scans, variances, middles, positions, r, c, mean, information, grid, widths, least,
+          margin, x, P, weight):  # fmt: skip
     """Fill the bank from one scan: in each window of the grid the mode, and Laplace's weight.
 
-    Return how many windows have a state. Windows whose predicted weight is `margin` below the best
-    are left as they are, with weight `LOST`.
+    Return the number of windows that have a state. Those whose predicted weight is `margin` below
+    the best are left out.
     """
     state, G = np.empty(6), np.zeros((6, 6))
-    g, H, L, row = np.empty(6), np.empty((6, 6)), np.zeros((6, 6)), np.empty(6)
+    g, H, L = np.empty(6), np.empty((6, 6)), np.zeros((6, 6))
+    A, B = np.empty((6, 6)), np.empty((6, 6))
     step, new = np.empty(6), np.empty(6)
-    window = np.empty((3, 2))
+    window, now = np.empty((3, 2)), middles[0]
     for i in range(3):
         window[i, 1] = 1 / widths[i] ** 2
     promised, best = np.empty(len(grid)), np.inf
     for w in range(len(grid)):
-        weight[w], promised[w] = LOST, np.inf
+        promised[w] = np.inf
         x[w, 0], x[w, 1], x[w, 5] = grid[w]
         x[w, 2] = x[w, 3] = x[w, 4] = 0.0
         put(window[:, 0], grid[w])
-        cost = objective(x[w], z, variance, positions, r, c, mean, information, window, least,
-                         state, G, g, H, row)  # fmt: skip
-        if not np.isfinite(cost):
-            continue
-        # beta and b: linear, given the rest
-        for i in (0, 1, 5):
-            for j in range(6):
-                H[i, j] = H[j, i] = 0.0
-            H[i, i] = 1.0
-            g[i] = 0.0
-        if np.isnan(factor(H, L)):
-            continue
-        downhill(L, g, step)
-        for i in range(2, 5):
-            x[w, i] += step[i]
-        cost = objective(x[w], z, variance, positions, r, c, mean, information, window, least,
-                         state, G, g, H, row)  # fmt: skip
-        if not np.isfinite(cost) or np.isnan(factor(H, L)):
-            continue
-        downhill(L, g, step)
-        promised[w] = cost
-        for i in range(6):
-            promised[w] += 0.5 * g[i] * step[i]
-        best = min(best, promised[w])
+        # First beta and b, in which the shifts are linear; then a step in all of them, not taken.
+        for linear in (True, False):
+            cost = objective(x[w], scans, variances, middles, now, positions, r, c, mean,
+                             information, window, least, state, G, g, H, A, B)  # fmt: skip
+            if linear:
+                for i in (0, 1, 5):
+                    for j in range(6):
+                        H[i, j] = H[j, i] = 0.0
+                    H[i, i] = 1.0
+                    g[i] = 0.0
+            if not np.isfinite(cost) or np.isnan(factor(H, L)):
+                break
+            _downhill(L, g, step)
+            if linear:
+                for i in range(2, 5):
+                    x[w, i] += step[i]
+            else:
+                promised[w] = cost
+                for i in range(6):
+                    promised[w] += 0.5 * g[i] * step[i]
+                best = min(best, promised[w])
     count = 0
     for w in range(len(grid)):
         if not promised[w] < best + margin:
             continue
         put(window[:, 0], grid[w])
-        cost = objective(x[w], z, variance, positions, r, c, mean, information, window, least,
-                         state, G, g, H, row)  # fmt: skip
-        determinant = factor(H, L)
-        for _ in range(4):
-            downhill(L, g, step)
-            share, fallen = 1.0, False
-            for _ in range(5):
-                for i in range(6):
-                    new[i] = x[w, i] + share * step[i]
-                cost_new = objective(new, z, variance, positions, r, c, mean, information, window,
-                                     least, state, G, g, H, row)  # fmt: skip
-                if cost_new < cost:
-                    fallen = True
-                    break
-                share *= 0.5
-            if not fallen:
-                break
-            gain = cost - cost_new
-            put(x[w], new)
-            cost = cost_new
-            determinant = factor(H, L)
-            if gain < 1e-3:
-                break
-        cost = objective(x[w], z, variance, positions, r, c, mean, information, window, least,
-                         state, G, g, H, row)  # fmt: skip
-        determinant = factor(H, L)
-        if np.isnan(determinant):
-            continue
-        for j in range(6):
-            for i in range(6):
-                step[i] = 1.0 if i == j else 0.0
-            solve(L, step)
-            put(P[count, j], step)
-        put(x[count], x[w])
-        weight[count] = -cost - 0.5 * determinant
-        count += 1
+        weight[count] = _descend(
+            x[w], scans, variances, middles, now, positions, r, c, mean, information, window,
+            least, P[count], state, G, g, H, A, B, L, step, new,
+        )  # fmt: skip
+        if weight[count] > LOST:
+            put(x[count], x[w])
+            count += 1
     return count
+
+
+@compiled
+def settle(scans, variances, middles, now, positions, r, c, mean, information, least, x, P, weight,
+           count):  # fmt: skip
+    """Move members to the modes of the posterior given all scans; return the number of modes.
+
+    The weight of a mode is Laplace's.
+    """
+    state, G = np.empty(6), np.zeros((6, 6))
+    g, H, L = np.empty(6), np.empty((6, 6)), np.zeros((6, 6))
+    A, B = np.empty((6, 6)), np.empty((6, 6))
+    step, new, window = np.empty(6), np.empty(6), np.zeros((3, 2))
+    kept = 0
+    for m in range(count):
+        weight[kept] = _descend(
+            x[m], scans, variances, middles, now, positions, r, c, mean, information, window,
+            least, P[kept], state, G, g, H, A, B, L, step, new,
+        )  # fmt: skip
+        alone = weight[kept] > LOST
+        for j in range(kept):
+            distance = 0.0
+            for i in range(6):
+                s = 0.0
+                for k in range(i, 6):
+                    s += L[k, i] * (x[m, k] - x[j, k])
+                distance += s * s
+            alone = alone and distance > _EQUAL
+        if alone:
+            put(x[kept], x[m])
+            kept += 1
+    return kept

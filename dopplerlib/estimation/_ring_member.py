@@ -8,11 +8,11 @@ from ..kernels import ring_coordinates as kernel
 LOST = -np.inf  # logarithm of the weight of a member that is none
 
 compiled = njit(nogil=True, error_model="numpy")
-_inline = njit(forceinline=True, error_model="numpy")
-_shift = _inline(kernel.shift_and_gradient)
-_to_state = _inline(kernel.to_state)
-_moved = _inline(kernel.moved)
-_pushed = _inline(kernel.pushed)
+inline = njit(forceinline=True, error_model="numpy")
+_shift = inline(kernel.shift_and_gradient)
+_to_state = inline(kernel.to_state)
+_moved = inline(kernel.moved)
+_pushed = inline(kernel.pushed)
 
 
 @compiled
@@ -92,25 +92,35 @@ def predict(x, P, T, noise, r, least, state, G, F, spare):
     return True
 
 
-@_inline
-def measure(x, u, position, r, c, g):
-    """Return the shift at one sensor, and write its gradient by the coordinates to `g`."""
-    shift, g[0], g[1], g[2], g[3], g[4], g[5] = _shift(
-        x[0], x[1], x[2], x[3], x[4], u, position[1], position[2], r, c
-    )
+@inline
+def measure(x, u, state, G, position, r, c, g):
+    """Return the shift at one sensor, and write its gradient by the coordinates to `g`.
+
+    `state` and its derivatives `G` count only if the sensor is off the plane.
+    """
+    shift, g[0], g[1], g[2], g[3], g[4], g[5], by_x, by_v = _shift(
+        x[0], x[1], x[2], x[3], x[4], u, state[0], state[3], position[0], position[1], position[2],
+        r, c,
+    )  # fmt: skip
+    if position[0] != 0.0:
+        for i in range(6):
+            g[i] += by_x * G[0, i] + by_v * G[3, i]
     return shift
 
 
 @compiled
-def update(x, P, z, variance, positions, r, c, iterations, at, before, P_before, g, b):
+def update(x, P, z, variance, positions, r, c, flat, iterations, state, G, at, before, P_before, g,
+           b):  # fmt: skip
     """Update one member, sensor by sensor, and return the log likelihood of the scan.
 
-    Every iteration linearizes at the estimate of the one before.
+    Every iteration linearizes at the estimate of the one before. `flat` says that all sensors are
+    in their plane.
     """
     put(before, x)
     put_square(P_before, P)
     put(at, x)
     likelihood = 0.0
+    state[0] = state[3] = 0.0
     for iteration in range(iterations):
         last = iteration + 1 == iterations
         if iteration:
@@ -118,10 +128,12 @@ def update(x, P, z, variance, positions, r, c, iterations, at, before, P_before,
             put(x, before)
             put_square(P, P_before)
         u = np.exp(-at[5])
+        if not flat:
+            state_at(at, r, state, G)
         for n in range(len(z)):
             if np.isnan(z[n]):
                 continue
-            innovation = z[n] - measure(at, u, positions[n], r, c, g)
+            innovation = z[n] - measure(at, u, state, G, positions[n], r, c, g)
             S = variance[n]
             for i in range(6):
                 innovation -= g[i] * (x[i] - at[i])

@@ -1,6 +1,7 @@
 """A Gaussian sum filter for Doppler shifts at a plane array, from a broad prior."""
 
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Annotated, Literal
 
@@ -10,18 +11,11 @@ from .. import _checks
 from .._hints import Count, Positive, Probability, checked, up_to
 from .._records import record
 from .._typing import ArrayLike
-from ..kernels import ring_coordinates as kernel
-from ..model.motion import constant_velocity, dwna_gain
 from ..model.radar_array import RadarArray
+from ._gaussian_sum_setting import Estimates, blank, new_bank, prepare, to_caller
 from .extended_kalman import _measurements, _variance
 
-# Windows of the start: distance in units of 1 / radius (of eta) and in logarithms (of rho), and
-# deviation of each window as a share of that distance, so that their sum is even to a percent.
-_ACROSS, _ALONG, _WIDTH = 0.05, 0.17, 0.71
-_DRAWN = 2**14  # points of the prior that say where windows are needed
-_COVERED = 0.999  # share of them that lie in windows
-_LEAST = 0.15  # of the radius: nearer to the plane of the sensors a member is given up
-_FLAT = 1e-9  # of the radius: so far a sensor may be off the plane
+_Members = Annotated[int, up_to(1000, least=0)]
 
 
 @record
@@ -31,11 +25,11 @@ class GaussianSumTrack:
     Attributes
     ----------
     x : ndarray, shape (..., O, 6)
-        Mean of the state in m and m/s; NaN if all members have been lost.
+        Mean of the state in m and m/s; NaN before the first block and if all members are lost.
     P : ndarray, shape (..., O, 6, 6)
         Covariance of the state.
     members : ndarray of int, shape (..., O)
-        Gaussians that the sum has left, 0 if all have been lost.
+        Gaussians that the sum has then.
     weights : ndarray, shape (..., O, M)
         Weights of the M heaviest Gaussians, the heaviest first; 0 where there are fewer. They add
         up to one if none is left out.
@@ -43,6 +37,10 @@ class GaussianSumTrack:
         Mean of the state in m and m/s under each of them, NaN where there are fewer.
     covariances : ndarray, shape (..., O, M, 6, 6)
         Covariance of the state under each of them, NaN where there are fewer.
+    evidence : ndarray, shape (..., O)
+        Logarithm of the density of the measurements so far under the filter's assumptions, in
+        1/Hz to the power of their number. Differences between filters of the same records say
+        which assumptions are the likelier ones, see `average_tracks`.
     """
 
     x: np.ndarray
@@ -51,6 +49,7 @@ class GaussianSumTrack:
     weights: np.ndarray
     means: np.ndarray
     covariances: np.ndarray
+    evidence: np.ndarray
 
 
 @checked
@@ -66,7 +65,7 @@ def gaussian_sum(
     noise: Literal["shared", "per_axis"] = "per_axis",
     *,
     every: Count = 1,
-    mixture: Annotated[int, up_to(1000, least=0)] = 0,
+    mixture: _Members = 0,
     block: Count = 5,
     lightest: Probability = 1e-5,
     loss: Positive = 1e-3,
@@ -82,7 +81,7 @@ def gaussian_sum(
     z : array_like, shape (..., K, N)
         Doppler measurements in Hz; NaN says that this sensor is missing at this sample.
     array : RadarArray
-        N sensors in a plane, not all on a line.
+        N sensors, not all on a line, in a plane or near it.
     x0 : array_like, shape (6,)
         Mean of the prior, one interval before the first sample, in m and m/s; not in the plane of
         the sensors. The target is on the same side.
@@ -91,7 +90,8 @@ def gaussian_sum(
     T : float
         Sampling interval in s.
     sigma_a : float
-        Standard deviation of the acceleration in m/s^2, see `constant_velocity`.
+        Standard deviation of the acceleration in m/s^2, see `constant_velocity`; 0 for a target
+        that goes straight.
     sigma_f : array_like, broadcast to (K, N)
         Standard deviation of the measurements in Hz.
     noise : {"shared", "per_axis"}
@@ -119,7 +119,8 @@ def gaussian_sum(
     Raises
     ------
     ValueError
-        If an argument has the wrong shape or value, or the sensors do not span a plane.
+        If an argument has the wrong shape or value, the sensors are on a line, or `x0` is not in
+        front of them.
 
     Notes
     -----
@@ -129,6 +130,8 @@ def gaussian_sum(
     Gaussian windows over direction and range; in each the mode is found by Gauss and Newton, and
     Laplace's approximation gives weight and covariance. Every second block, the lightest
     Gaussians are united with their neighbors while the cost after Runnalls (2007) allows.
+
+    An estimate is made from whole blocks: between the ends of two blocks it is a prediction.
 
     Examples
     --------
@@ -146,99 +149,104 @@ def gaussian_sum(
     """
     z = _measurements(z, array)
     weights = 1 / _variance(sigma_f, z.shape[-2:])
-    x0 = _checks.exact_shape("x0", _checks.moderate("x0", x0, (6,)), (6,))
-    P0 = _checks.exact_shape("P0", _checks.covariance("P0", P0, 6), (6, 6))
     batch, (K, N) = z.shape[:-2], z.shape[-2:]
-    block = min(block, K)
-
-    # The frame of the array: origin in the middle, first axis towards the prior.
-    center, axes, radius = _frame(array, x0)
-    turn = np.kron(np.eye(2), axes)
-    G, sigma_a = dwna_gain(np.array([T]), sigma_a, noise)
-    columns = np.ascontiguousarray((turn @ (sigma_a * G[0])).T)
-    ahead = (block + 1) / 2 * T  # from the prior to the middle of the first block
-    F, Q = constant_velocity(ahead, sigma_a * np.sqrt(T / ahead), noise)
-    mean = turn @ (F @ (x0 - np.concatenate([center, np.zeros(3)])))
-    P = turn @ (F @ P0 @ F.T + Q) @ turn.T
-    _checks.estimates("x0, P0, T, sigma_a", mean, P)
-    P = _checks.covariance("P0", (P + P.T) / 2, 6)
-    least = _LEAST * radius
-    grid, widths = _windows(mean, P, radius, least)
-    positions = np.ascontiguousarray((array.positions - center) @ axes.T)
-
-    runs = int(np.prod(batch))
-    z = np.ascontiguousarray(z).reshape(runs, K, N)
-    outputs = K // every
-    # As it is where all members have been lost.
-    x, covariance = np.full((runs, outputs, 6), np.nan), np.full((runs, outputs, 6, 6), np.nan)
-    members, shares = np.zeros((runs, outputs), np.int64), np.zeros((runs, outputs, mixture))
-    means = np.full((runs, outputs, mixture, 6), np.nan)
-    covariances = np.full((runs, outputs, mixture, 6, 6), np.nan)
-    information = np.linalg.inv(P)
+    frame, setting = prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss)
+    z = np.ascontiguousarray(z).reshape(-1, K, N)
     for value in (z, weights):
         value.flags.writeable = False
+    found = blank(len(z), K // every, mixture=mixture)
 
     # Here, and not above, so that importing the library does not load numba.
-    from ._gaussian_sum_loop import filter_records
+    from ._gaussian_sum_loop import track
 
-    def part(run):
-        rows = slice(run, run + 1)
-        filter_records(
-            z[rows], weights, positions, radius, array.doppler_per_speed, float(T), block, columns,
-            mean, (information + information.T) / 2, grid, widths, least, float(lightest),
-            float(loss), every, x[rows], covariance[rows], members[rows],
-            shares[rows], means[rows], covariances[rows],
-        )  # fmt: skip
+    def one(run):
+        out = Estimates(*(value[run] for value in found))
+        track(setting, new_bank(setting), z[run], weights, every, out)
 
     with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
-        list(pool.map(part, range(runs)))
-    for at in (x, means):
-        at[:] = at @ turn
-        at[..., :3] += center
-    results = (x, turn.T @ covariance @ turn, members, shares, means, turn.T @ covariances @ turn)
-    return GaussianSumTrack(*(value.reshape(*batch, *value.shape[1:]) for value in results))
-
-
-def _frame(array, x0):
-    """Return center, axes (3, 3) as rows and radius of a plane array; x0 lies on its first axis."""
-    center = array.positions.mean(axis=0)
-    around = array.positions - center
-    radius = float(np.sqrt(np.mean(np.sum(around**2, axis=-1))))
-    _, spread, rows = np.linalg.svd(around, full_matrices=True)
-    if len(array) < 3 or spread[1] < 1e-6 * spread[0] or spread[2] > _FLAT * spread[0]:
-        raise ValueError(
-            "array must have its sensors in one plane and not on a line, got extents "
-            f"{np.round(spread, 6).tolist()} m along its axes"
-        )
-    normal = rows[2]
-    height = (x0[:3] - center) @ normal
-    if not abs(height) > _LEAST * radius:
-        raise ValueError(
-            f"x0 must lie in front of the plane of the sensors, got {abs(height):g} m beside it"
-        )
-    normal = normal * np.sign(height)
-    return center, np.array([normal, rows[0], np.cross(normal, rows[0])]), radius
-
-
-def _windows(mean, P, radius, least):
-    """Return centers (W, 3) of eta and ln rho where the prior is, and widths of the windows."""
-    draws = np.random.default_rng(0).standard_normal((_DRAWN, 6))
-    states = mean + draws @ np.linalg.cholesky(P).T
-    states = states[states[:, 0] > least]
-    if not len(states):
-        raise ValueError("P0 must leave states in front of the sensors, got none")
-    eta_y, eta_z, *_, rho = kernel.to_coordinates(*states.T, radius)
-    across = _ACROSS / radius
-    # A hexagonal lattice: rows sqrt(3) / 2 apart, each other one moved by half.
-    row = np.round(eta_z / (across * np.sqrt(3) / 2))
-    cells = np.stack(
-        [np.round(eta_y / across - 0.5 * (row % 2)), row, np.round(np.log(rho) / _ALONG)]
+        list(pool.map(one, range(len(z))))
+    return GaussianSumTrack(
+        *(value.reshape(*batch, *value.shape[1:]) for value in to_caller(found, frame))
     )
-    cells, drawn = np.unique(cells.T.astype(int), axis=0, return_counts=True)
-    order = np.argsort(-drawn, kind="stable")
-    cells = cells[order][np.cumsum(drawn[order]) - drawn[order] < _COVERED * drawn.sum()]
-    i, j, k = cells.T
-    grid = np.stack(
-        [(i + 0.5 * (j % 2)) * across, j * across * np.sqrt(3) / 2, k * _ALONG], axis=-1
-    )
-    return grid, _WIDTH * np.array([across, across, _ALONG])
+
+
+@checked
+@_checks.quiet
+def gaussian_sum_online(
+    array: RadarArray,
+    x0: ArrayLike,
+    P0: ArrayLike,
+    T: Positive,
+    sigma_a: float,
+    sigma_f: ArrayLike,
+    noise: Literal["shared", "per_axis"] = "per_axis",
+    *,
+    mixture: _Members = 0,
+    block: Count = 5,
+    lightest: Probability = 1e-5,
+    loss: Positive = 1e-3,
+) -> Callable[[ArrayLike], GaussianSumTrack]:
+    """Prepare the filter of `gaussian_sum` for samples that come one by one.
+
+    Parameters
+    ----------
+    array : RadarArray
+        N sensors, see `gaussian_sum`.
+    x0 : array_like, shape (6,)
+        Mean of the prior, one interval before the first sample, in m and m/s.
+    P0 : array_like, shape (6, 6)
+        Covariance of the prior.
+    T : float
+        Sampling interval in s.
+    sigma_a : float
+        Standard deviation of the acceleration in m/s^2.
+    sigma_f : array_like, broadcast to (N,)
+        Standard deviation of the measurements in Hz.
+    noise : {"shared", "per_axis"}
+        Process noise, see `constant_velocity`.
+    mixture, block : int
+        See `gaussian_sum`.
+    lightest, loss : float
+        See `gaussian_sum`.
+
+    Returns
+    -------
+    callable
+        A function that takes the next sample (N,) in Hz, NaN for a missing sensor, and returns the
+        estimate after it, a `GaussianSumTrack` without the axis of time: to the last bit what
+        `gaussian_sum` returns. It remembers the samples before; each call of `gaussian_sum_online`
+        gives another one, for another target.
+
+    Raises
+    ------
+    ValueError
+        As `gaussian_sum`; the function, if a sample has not N values.
+
+    Examples
+    --------
+    >>> from dopplerlib import doppler_shift
+    >>> array, x = RadarArray.ring(6, 0.2), np.array([0.8, 0.1, 0.1, -0.7, 0, 0])
+    >>> prior = [0.8, 0, 0, -0.75, 0, 0], np.diag([0.2, 0.25, 0.25, 0.25, 0.25, 0.25]) ** 2
+    >>> update = gaussian_sum_online(array, *prior, T=1e-3, sigma_a=0.1, sigma_f=0.4)
+    >>> for _ in range(5):
+    ...     found = update(doppler_shift(x, array))
+    >>> found.x.shape, int(found.members) > 10
+    ((6,), True)
+    """
+    weights = 1 / _variance(sigma_f, (1, len(array)))
+    weights.flags.writeable = False
+    frame, setting = prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss)
+    bank = new_bank(setting)
+
+    @_checks.quiet
+    def update(z: ArrayLike) -> GaussianSumTrack:
+        """Take the next sample (N,) in Hz and return the estimate after it."""
+        from ._gaussian_sum_loop import track
+
+        sample = _measurements(np.asarray(z)[None], array)
+        sample.flags.writeable = False
+        found = blank(1, mixture=mixture)
+        track(setting, bank, sample, weights, 1, found)
+        return GaussianSumTrack(*(value[0] for value in to_caller(found, frame)))
+
+    return update

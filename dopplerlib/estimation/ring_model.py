@@ -176,9 +176,9 @@ class RingModel:
         near = beside > most
         xi[..., :2] *= np.where(near, most / np.where(near, beside, 1.0), 1.0).min(-1)[..., None]
         *seen, ell = np.moveaxis(xi[..., None, :], -1, 0)
-        shift_and_gradient = kernel.shift_and_gradient(
-            *seen, np.exp(-ell), s_y, s_z, self.radius, self.array.doppler_per_speed
-        )
+        unseen = 0.0, 0.0  # x and v_x, as long as all sensors are in the plane
+        sensors = *self.array.positions.T, self.radius, self.array.doppler_per_speed
+        shift_and_gradient = kernel.shift_and_gradient(*seen, np.exp(-ell), *unseen, *sensors)[:7]
         return np.stack(np.broadcast_arrays(*shift_and_gradient), axis=-1)
 
     def _coordinates(self, x):

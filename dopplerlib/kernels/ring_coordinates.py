@@ -7,13 +7,13 @@ Printed by ``python -m dopplerlib.derive`` with SymPy 1.14.0. Do not edit: chang
 from numpy import sqrt
 
 
-def shift_and_gradient(eta_y, eta_z, beta_y, beta_z, b, u, s_y, s_z, r,
-        doppler_per_speed):
-    """Doppler shift in Hz and its derivatives by eta, beta, b and ln rho."""
+def shift_and_gradient(eta_y, eta_z, beta_y, beta_z, b, u, x, v_x, s_x, s_y,
+        s_z, r, doppler_per_speed):
+    """Doppler shift in Hz; derivatives by eta, beta, b and ln rho, and by x and v_x."""
     # rho over the distance of sensor and target
-    inverse_root = 1/sqrt(-2*eta_y*s_y - 2*eta_z*s_z + (u*u)*(-(r*r) + s_y*s_y + s_z*s_z) + 1)
+    inverse_root = 1/sqrt(-2*eta_y*s_y - 2*eta_z*s_z + (u*u)*(-(r*r) + s_x*s_x - 2*s_x*x + s_y*s_y + s_z*s_z) + 1)
     # shift and gradient
-    t0 = -b + beta_y*s_y + beta_z*s_z
+    t0 = -b + beta_y*s_y + beta_z*s_z + s_x*u*v_x
     t1 = doppler_per_speed*inverse_root
     shift = t0*t1
     t2 = doppler_per_speed*(inverse_root*inverse_root*inverse_root)*t0
@@ -22,8 +22,11 @@ def shift_and_gradient(eta_y, eta_z, beta_y, beta_z, b, u, s_y, s_z, r,
     h_betay = s_y*t1
     h_betaz = s_z*t1
     h_b = -t1
-    h_ell = t2*(u*u)*(-(r*r) + s_y*s_y + s_z*s_z)
-    return shift, h_etay, h_etaz, h_betay, h_betaz, h_b, h_ell
+    t3 = t1*u
+    h_ell = -t3*(-(inverse_root*inverse_root)*t0*u*(-(r*r) + s_x*s_x - 2*s_x*x + s_y*s_y + s_z*s_z) + s_x*v_x)
+    h_x = s_x*t2*(u*u)
+    h_vx = s_x*t3
+    return shift, h_etay, h_etaz, h_betay, h_betaz, h_b, h_ell, h_x, h_vx
 
 
 def to_coordinates(x, y, z, v_x, v_y, v_z, r):

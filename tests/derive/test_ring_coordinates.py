@@ -12,15 +12,14 @@ R = 0.2
 STATES = np.array([[0.833, 0.111, 0.092, -0.75, -0.125, -0.018], [0.4, -0.5, 0.3, 0.2, 1.0, -0.7]])
 
 
-@pytest.mark.parametrize(
-    "proof", [derived.prove_shift, derived.prove_sign, derived.prove_scale_is_unseen,
-              derived.prove_volume],
-)  # fmt: skip
+@pytest.mark.parametrize("proof", [derived.prove_shift, derived.prove_sign, derived.prove_volume])
 def test_the_difference_is_zero(proof):
     assert proof() == 0
 
 
-@pytest.mark.parametrize("proof", [derived.prove_rates, derived.prove_inverse])
+@pytest.mark.parametrize(
+    "proof", [derived.prove_scale_is_unseen, derived.prove_rates, derived.prove_inverse]
+)
 def test_all_entries_are_zero(proof):
     assert proof().is_zero_matrix
 
@@ -42,8 +41,8 @@ def by_steps(function, at, step=1e-6):
     return np.stack(sides, axis=-1) / (2 * step)
 
 
-def matrix(entries, places):
-    """Return the (6, 6) matrix whose entries at `places` are given row by row."""
+def matrix(places, entries):
+    """Return the (6, 6) matrix whose entries at `places` are given."""
     result = np.zeros((6, 6))
     result[tuple(zip(*places, strict=True))] = entries
     return result
@@ -55,19 +54,19 @@ def places(symbols):
 
 @pytest.mark.parametrize("x", STATES)
 def test_the_printed_shift_is_that_of_the_state(x):
-    array = RadarArray([[0, 0.05, 0.1], [0, -0.3, 0.02], [0, 0.2, 0.0]])  # the last on the circle
+    # The last but one is on the circle; the last is off the plane.
+    array = RadarArray([[0, 0.05, 0.1], [0, -0.3, 0.02], [0, 0.2, 0.0], [0.06, 0.1, -0.1]])
     *seen, scale = to_ring_coordinates(x, R)
-    s_y, s_z = array.positions.T[1:]
-    shift, *gradient = kernel.shift_and_gradient(
-        *seen, np.exp(-scale), s_y, s_z, R, array.doppler_per_speed
+    shift, *gradient, by_x, by_v = kernel.shift_and_gradient(
+        *seen, np.exp(-scale), x[0], x[3], *array.positions.T, R, array.doppler_per_speed
     )
     # A dozen roundings of shifts up to some 200 Hz.
     np.testing.assert_allclose(shift, doppler_shift(x, array), rtol=0, atol=1e-11)
-    names, values = zip(*_inverse_entries(x), strict=True)
-    slopes = doppler_jacobian(x, array) @ matrix(values, names)
-    np.testing.assert_allclose(
-        np.stack(np.broadcast_arrays(*gradient), axis=-1), slopes, rtol=1e-11, atol=1e-10
-    )
+    inverse = matrix(*zip(*_inverse_entries(x), strict=True))
+    found = np.stack(np.broadcast_arrays(*gradient), axis=-1)
+    found += by_x[:, None] * inverse[0] + by_v[:, None] * inverse[3]
+    slopes = doppler_jacobian(x, array) @ inverse
+    np.testing.assert_allclose(found, slopes, rtol=1e-11, atol=1e-10)
     assert gradient[-1][2] == pytest.approx(0, abs=1e-12)
 
 
@@ -84,7 +83,7 @@ def test_the_way_back_and_its_derivatives(x):
     np.testing.assert_allclose(from_ring_coordinates(xi, R), x, rtol=1e-13, atol=1e-14)
     names, values = zip(*_inverse_entries(x), strict=True)
     slopes = by_steps(lambda at: from_ring_coordinates(at, R), xi)
-    np.testing.assert_allclose(matrix(values, names), slopes, rtol=1e-7, atol=1e-8)
+    np.testing.assert_allclose(matrix(names, values), slopes, rtol=1e-7, atol=1e-8)
 
 
 @pytest.mark.parametrize("x", STATES)

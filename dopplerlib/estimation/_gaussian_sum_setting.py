@@ -1,0 +1,185 @@
+"""Constants and memory of a Gaussian sum filter, as the compiled loop takes them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _checks
+from ..kernels import ring_coordinates as kernel
+from ..model.motion import constant_velocity, dwna_gain, ncv_transition
+
+# Windows of the start: distance in units of 1 / radius (of eta) and in logarithms (of rho), and
+# deviation of each window as a share of that distance, so that their sum is even to a percent.
+_ACROSS, _ALONG, _WIDTH = 0.05, 0.17, 0.71
+_DRAWN = 2**14  # points of the prior that say where windows are needed
+_COVERED = 0.999  # share of them that lie in windows
+_LEAST = 0.15  # of the radius: nearer to the sensors' plane, or the first of them, a member is lost
+_FLAT = 1e-9  # of the radius: so far off the plane a sensor is in it
+_SCANS = 512  # that are kept of a target that goes straight
+
+
+class Setting(NamedTuple):
+    """Constants of a filter: of array, motion, prior and approximation."""
+
+    positions: np.ndarray
+    r: float
+    c: float
+    T: float
+    block: int
+    noise: np.ndarray
+    flat: bool
+    mean: np.ndarray
+    information: np.ndarray
+    prior: float
+    share: float
+    grid: np.ndarray
+    widths: np.ndarray
+    least: float
+    lightest: float
+    loss: float
+
+
+class Bank(NamedTuple):
+    """The members, the block that is being filled, and what went before; written to in place."""
+
+    x: np.ndarray
+    P: np.ndarray
+    weight: np.ndarray
+    samples: np.ndarray
+    weights: np.ndarray
+    numbers: np.ndarray
+    logs: np.ndarray
+    scans: np.ndarray
+    variances: np.ndarray
+    middles: np.ndarray
+
+
+class Estimates(NamedTuple):
+    """Arrays of O estimates, in the order of `GaussianSumTrack`; written to in place."""
+
+    x: np.ndarray
+    P: np.ndarray
+    members: np.ndarray
+    weights: np.ndarray
+    means: np.ndarray
+    covariances: np.ndarray
+    evidence: np.ndarray
+
+
+class Frame(NamedTuple):
+    """Where the array is, and how it is turned, (6, 6)."""
+
+    origin: np.ndarray
+    turn: np.ndarray
+
+
+def prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss):
+    """Return `Frame` and `Setting` of a filter; errors name its arguments."""
+    x0 = _checks.exact_shape("x0", _checks.moderate("x0", x0, (6,)), (6,))
+    P0 = _checks.exact_shape("P0", _checks.covariance("P0", P0, 6), (6, 6))
+    # The frame of the array: origin in the middle, first axis towards the prior.
+    center, axes, radius, positions, flat, least = _frame(array, x0)
+    frame = Frame(np.concatenate([center, np.zeros(3)]), np.kron(np.eye(2), axes))
+    turn = frame.turn
+    ahead = (block + 1) / 2 * T  # from the prior to the middle of the first block
+    F, columns = ncv_transition(ahead, 3, "derivative"), np.zeros((0, 6))
+    P = F @ P0 @ F.T
+    if _checks.one_number("sigma_a", sigma_a) != 0:
+        G, sigma_a = dwna_gain(np.array([T]), sigma_a, noise)
+        columns = np.ascontiguousarray((turn @ (sigma_a * G[0])).T)
+        P = P + constant_velocity(ahead, sigma_a * np.sqrt(T / ahead), noise)[1]
+    mean, P = turn @ (F @ (x0 - frame.origin)), turn @ P @ turn.T
+    _checks.estimates("x0, P0, T, sigma_a", mean, P)
+    P = _checks.covariance("P0", (P + P.T) / 2, 6)
+    grid, widths = _windows(mean, P, radius, least)
+    information = np.linalg.inv(P)
+    # The integral over one window, times the number of windows in a unit of the lattice.
+    cell = np.prod(widths / _WIDTH) * np.sqrt(3) / 2
+    overlap = np.sum(np.log(np.sqrt(2 * np.pi) * widths)) - np.log(cell)
+    prior = -0.5 * float(np.linalg.slogdet(P)[1])
+    return frame, Setting(
+        np.ascontiguousarray(positions), radius, float(array.doppler_per_speed), float(T), block,
+        columns, flat, mean, (information + information.T) / 2,
+        prior, prior - float(overlap), grid, widths, least, float(lightest), float(loss),
+    )  # fmt: skip
+
+
+def new_bank(setting: Setting) -> Bank:
+    """Return a bank without members, before the first sample."""
+    size, N = len(setting.grid), len(setting.positions)
+    scans = 1 if len(setting.noise) else _SCANS
+    numbers = np.zeros(7, np.int64)
+    numbers[4] = setting.block
+    return Bank(
+        np.empty((size, 6)), np.empty((size, 6, 6)), np.empty(size),
+        np.empty((setting.block, N)), np.empty((setting.block, N)), numbers, np.zeros(2),
+        np.empty((scans, N)), np.empty((scans, N)), np.empty(scans),
+    )  # fmt: skip
+
+
+def blank(*shape: int, mixture: int) -> Estimates:
+    """Return estimates as they are where no member is."""
+    return Estimates(
+        np.full((*shape, 6), np.nan), np.full((*shape, 6, 6), np.nan), np.zeros(shape, np.int64),
+        np.zeros((*shape, mixture)), np.full((*shape, mixture, 6), np.nan),
+        np.full((*shape, mixture, 6, 6), np.nan), np.full(shape, -np.inf),
+    )  # fmt: skip
+
+
+def to_caller(found: Estimates, frame: Frame) -> Estimates:
+    """Return estimates in the frame of the caller."""
+    origin, turn = frame
+    return found._replace(
+        x=found.x @ turn + origin, P=turn.T @ found.P @ turn,
+        means=found.means @ turn + origin, covariances=turn.T @ found.covariances @ turn,
+    )  # fmt: skip
+
+
+def _frame(array, x0):
+    """Return center, axes (3, 3) as rows and radius of an array; x0 lies on its first axis."""
+    center = array.positions.mean(axis=0)
+    around = array.positions - center
+    radius = float(np.sqrt(np.mean(np.sum(around**2, axis=-1))))
+    _, spread, rows = np.linalg.svd(around, full_matrices=True)
+    if len(array) < 3 or spread[1] < 1e-6 * spread[0]:
+        raise ValueError(
+            "array must have three sensors that are not on a line, got extents "
+            f"{np.round(spread, 6).tolist()} m along its axes"
+        )
+    normal = rows[2] * np.sign((x0[:3] - center) @ rows[2])
+    axes = np.array([normal, rows[0], np.cross(normal, rows[0])])
+    positions = around @ axes.T
+    flat = np.abs(positions[:, 0]).max() < _FLAT * radius
+    if flat:
+        positions[:, 0] = 0.0
+    ahead, least = (x0[:3] - center) @ normal, positions[:, 0].max() + _LEAST * radius
+    if not ahead > least:
+        raise ValueError(
+            f"x0 must lie in front of the sensors, more than {least:g} m from the middle of their "
+            f"plane, got {ahead:g} m"
+        )
+    return center, axes, radius, positions, bool(flat), float(least)
+
+
+def _windows(mean, P, radius, least):
+    """Return centers (W, 3) of eta and ln rho where the prior is, and widths of the windows."""
+    draws = np.random.default_rng(0).standard_normal((_DRAWN, 6))
+    states = mean + draws @ np.linalg.cholesky(P).T
+    states = states[states[:, 0] > least]
+    if not len(states):
+        raise ValueError("P0 must leave states in front of the sensors, got none")
+    eta_y, eta_z, *_, rho = kernel.to_coordinates(*states.T, radius)
+    across = _ACROSS / radius
+    # A hexagonal lattice: rows sqrt(3) / 2 apart, each other one moved by half.
+    row = np.round(eta_z / (across * np.sqrt(3) / 2))
+    cells = np.stack(
+        [np.round(eta_y / across - 0.5 * (row % 2)), row, np.round(np.log(rho) / _ALONG)]
+    )
+    cells, drawn = np.unique(cells.T.astype(int), axis=0, return_counts=True)
+    order = np.argsort(-drawn, kind="stable")
+    cells = cells[order][np.cumsum(drawn[order]) - drawn[order] < _COVERED * drawn.sum()]
+    i, j, k = cells.T
+    grid = np.stack(
+        [(i + 0.5 * (j % 2)) * across, j * across * np.sqrt(3) / 2, k * _ALONG], axis=-1
+    )
+    return grid, _WIDTH * np.array([across, across, _ALONG])
