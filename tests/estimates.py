@@ -106,6 +106,10 @@ CALLS = {
     whitening.whitening_matrices: {
         "correlation": [1.0, 0.3], "there": np.ones((4, 2), bool),
     },
+    variable_projection.log_position_density: {
+        "z": shifts, "array": array, "sigma_f": 0.4, "p": [0.5, 0.2, 0.1], "x0": state,
+        "P0": np.eye(6),
+    },
     variable_projection.velocity_given_position: {
         "z": shifts[0], "array": array, "sigma_f": 0.1, "p": state[:3], "in_plane": True,
     },

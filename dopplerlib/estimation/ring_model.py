@@ -89,7 +89,10 @@ class RingModel:
 
     @_checks.quiet
     def start(self, x0: ArrayLike, P0: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return mean and covariance of the coordinates of Gaussian states, by cubature.
+        """Return mean and covariance of the coordinates of Gaussian states.
+
+        By Gauss and Hermite's rule with three points an axis: a prior is broad, and the 12 points
+        of cubature would miss a third of the spread of eta.
 
         Parameters
         ----------
@@ -104,7 +107,11 @@ class RingModel:
         ndarray, shape (..., 6, 6)
         """
         x0, P0 = _checks.moderate("x0", x0, (6,)), _checks.covariance("P0", P0, 6, definite=False)
-        return sigma_points.moments(self._coordinates, x0, P0, sigma_points.scaling(6))
+        points, weight = _hermite()
+        xi = self._coordinates(x0[..., None, :] + points @ covariances.square_root(P0).mT)
+        mean = weight @ xi
+        off = np.sqrt(weight) * (xi - mean[..., None, :]).mT
+        return mean, covariances.squared(off)
 
     @_checks.quiet
     def state(self, xi: ArrayLike, P: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -216,3 +223,11 @@ class RingModel:
         far = across > most
         held[..., :2] *= np.where(far, most / np.where(far, across, 1.0), 1.0)[..., None]
         return held
+
+
+def _hermite():
+    """Return points (729, 6) and weights of the rule for six standard normal variables."""
+    node, share = np.polynomial.hermite_e.hermegauss(3)
+    axes = np.meshgrid(*[node] * 6)
+    shares = np.meshgrid(*[share / share.sum()] * 6)
+    return np.stack(axes, axis=-1).reshape(-1, 6), np.prod(shares, axis=0).ravel()

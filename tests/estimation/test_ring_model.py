@@ -92,6 +92,15 @@ def test_small_clouds_go_there_and_back():
     np.testing.assert_allclose(P_back, np.stack([P, P]), atol=1e-3 * P.max())
 
 
+def test_a_broad_prior_keeps_its_spread():
+    """Beside 40 000 draws; three points an axis are exact to the fifth order, not beyond."""
+    x0, P0 = np.array([0.8, 0, 0, -0.75, 0, 0]), np.diag([0.2, *[0.25] * 5]) ** 2
+    mean, P = RingModel(RING, T, SIGMA).start(x0, P0)
+    draws = to_ring_coordinates(np.random.default_rng(2).multivariate_normal(x0, P0, 40_000), 0.2)
+    np.testing.assert_allclose(mean, draws.mean(axis=0), rtol=0, atol=0.01)
+    np.testing.assert_allclose(np.sqrt(np.diag(P)), draws.std(axis=0), rtol=0.1)
+
+
 def test_coordinates_without_a_state_are_taken_for_some_with_one():
     model = RingModel(RING, T, SIGMA)
     odd = np.tile(coordinates(model, STATES[0]), (4, 1))

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.stats import multivariate_normal, norm
 
 from dopplerlib import RadarArray, doppler_shift, ml_initialize
-from dopplerlib.estimation.variable_projection import velocity_given_position
+from dopplerlib.estimation.variable_projection import (
+    log_position_density,
+    velocity_given_position,
+)
 
 RING, LINE = RadarArray.ring(6, 0.2), RadarArray.linear(5, 0.4)
 STATE = np.array([0.8, 0.1, 0.1, -0.7, -0.1, 0.2])
@@ -82,3 +86,45 @@ def test_what_is_no_linear_problem_is_refused(changed, match):
     arguments = {"z": np.ones(6), "array": RING, "sigma_f": 0.4, "p": [1.0, 0, 0]} | changed
     with pytest.raises(ValueError, match=match):
         velocity_given_position(**arguments)
+
+
+PRIOR = np.array([0.7, 0.1, 0, -0.6, 0, 0.1]), np.diag([0.04, 0.09, 0.06, 0.05, 0.02, 0.08]) + 0.01
+
+
+def test_the_density_of_positions_is_that_of_all_samples_at_once():
+    """SciPy's normal density of the stacked samples, and of the position; some are missing."""
+    rng = np.random.default_rng(7)
+    z = doppler_shift(STATE, RING) + 0.4 * rng.standard_normal((5, 6))
+    z[1, 2] = z[:, 4] = np.nan
+    deviations = 0.3 + 0.1 * np.arange(6)
+    p = STATE[:3] + 0.2 * rng.standard_normal((4, 3))
+    x0, P0 = PRIOR
+    wanted = []
+    for place in p:
+        gain = P0[3:, :3] @ np.linalg.inv(P0[:3, :3])
+        v, V = x0[3:] + gain @ (place - x0[:3]), P0[3:, 3:] - gain @ P0[:3, 3:]
+        lines = [doppler_shift([*place, *axis], RING) for axis in np.eye(3)]
+        A, R = np.tile(np.transpose(lines), (5, 1)), np.diag(np.tile(deviations**2, 5))
+        there = ~np.isnan(z.ravel())
+        mean, S = (A @ v)[there], (A @ V @ A.T + R)[np.ix_(there, there)]
+        wanted.append(multivariate_normal.logpdf(z.ravel()[there], mean, S))
+        wanted[-1] += multivariate_normal.logpdf(place, x0[:3], P0[:3, :3])
+    found = log_position_density(z, RING, deviations, p, x0, P0)
+    assert_allclose(found - found[0], np.subtract(wanted, wanted[0]), rtol=1e-9, atol=1e-9)
+
+
+def test_the_density_of_positions_is_an_integral_over_velocities():
+    """One sensor sees one component of the velocity: a sum over a fine grid of that."""
+    sensor, z = RadarArray([[0, 0, 0]]), np.full((3, 1), -100.0)
+    x0, P0 = np.array([1.0, 0, 0, -0.5, 0, 0]), np.diag([0.1, 0.1, 0.1, 0.04, 0.04, 0.04])
+    p = np.array([[0.8, 0, 0], [1.3, 0, 0]])
+    speed = np.linspace(-2, 1, 30_001)
+    likelihood = norm.logpdf(-100.0, -160 * speed, 5.0) * 3 + norm.logpdf(speed, -0.5, 0.2)
+    wanted = np.log(np.exp(likelihood).sum()) + norm.logpdf(p[:, 0], 1, 0.1**0.5)
+    found = log_position_density(z, sensor, 5.0, p, x0, P0)
+    # In front of one sensor the velocity is the same at both distances.
+    assert found[1] - found[0] == pytest.approx(wanted[1] - wanted[0], rel=1e-9)
+    slower = log_position_density(z, sensor, 5.0, p, [*x0[:3], -0.3, 0, 0], P0)
+    shifted = norm.logpdf(-100.0, -160 * speed, 5.0) * 3 + norm.logpdf(speed, -0.3, 0.2)
+    gained = np.log(np.exp(shifted).sum() / np.exp(likelihood).sum())
+    assert_allclose(slower - found, gained, rtol=1e-6)
