@@ -13,9 +13,10 @@ from .._typing import ArrayLike
 from ..kernels import ring_coordinates as kernel
 from ..model.motion import constant_velocity, dwna_gain
 from ..model.radar_array import RadarArray
+from ._gaussian_sum_setting import _frame
 from ._student_mixture import StudentMixture, efficiency, normalized
 from .extended_kalman import _measurements, _variance
-from .gaussian_sum import _frame, gaussian_sum
+from .gaussian_sum import gaussian_sum
 
 _BACKWARD = np.array([1.0, 1, 1, -1, -1, -1])  # of a state: that in reversed time
 _MEMBERS = 100  # of the Gaussian sum that are taken, at most
@@ -147,7 +148,7 @@ def importance_posterior(
         G, sigma_a = dwna_gain(np.array([T]), sigma_a, noise)
         columns = np.ascontiguousarray((sigma_a * G[0]).T)
     mean, information = F @ x0, np.linalg.inv(F @ P0 @ F.T + columns.T @ columns)
-    to_ring, from_ring = _coordinates(*_frame(array, x0))
+    to_ring, from_ring = _coordinates(*_frame(array, x0)[:3])
     weights = 1 / variance
 
     # Here, and not above, so that importing the library does not load numba.
