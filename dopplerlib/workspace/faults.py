@@ -12,12 +12,12 @@ from typing import Annotated, Literal
 import numpy as np
 
 from .. import _checks
-from .._hints import Positive, checked
+from .._hints import Positive, between, checked
 from .._records import record
 from .._typing import FloatArray
 from ..model.doppler import doppler_shift
 from ..model.radar_array import RadarArray
-from .targets import ARRAY, INTERVAL, SIGMA_F, _ended, _not_negative, draw_targets
+from .targets import ARRAY, INTERVAL, SIGMA_F, _ended, draw_targets
 
 BAND = 320.0  # Hz: shifts of targets up to the 2 m/s of the paper's drive; a search ends there
 
@@ -51,7 +51,7 @@ class Fault:
     """
 
     kind: Kind
-    size: Annotated[float, _not_negative]
+    size: Annotated[float, between(0, 1e60)]
     assumed: Positive
     why: str
 
@@ -102,7 +102,7 @@ def with_fault(
     paths: _Paths,
     z: _Records,
     kind: Kind,
-    size: Annotated[float, _not_negative],
+    size: Annotated[float, between(0, 1e60)],
     *,
     rng: np.random.Generator,
     array: RadarArray = ARRAY,

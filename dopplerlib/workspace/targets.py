@@ -11,7 +11,7 @@ from typing import Annotated
 import numpy as np
 
 from .. import _checks
-from .._hints import Count, Covariance, Positive, Runs, State, checked
+from .._hints import Count, Covariance, Positive, Runs, State, between, checked
 from .._typing import FloatArray
 from ..estimation import covariances
 from ..model.doppler import doppler_shift
@@ -35,19 +35,12 @@ _CLEAR = 200  # samples that every record has
 _ATTEMPTS = 10_000  # to draw one target
 
 
-def _not_negative(name, value):
-    number = _checks.one_number(name, value, _checks.moderate)
-    if number < 0:
-        raise ValueError(f"{name} must not be negative, got {number}")
-    return number
-
-
 @checked
 def draw_targets(
     runs: Runs,
     *,
     rng: np.random.Generator,
-    sigma_a: Annotated[float, _not_negative] = SIGMA_A,
+    sigma_a: Annotated[float, between(0, 1e60)] = SIGMA_A,
     x0: State | None = None,
     prior: tuple[State, Covariance] = (PRIOR_MEAN, PRIOR_COVARIANCE),
     samples: Count = SAMPLES,

@@ -128,7 +128,7 @@ def test_records_are_shifts_with_white_noise(paths):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"sigma_a": -1}, "sigma_a must not be negative, got -1.0"),
+        ({"sigma_a": -1}, "sigma_a must be from 0 to 1e"),
         ({"sigma_a": np.inf}, "sigma_a must"),
         ({"samples": 0}, "samples must be a whole number"),
         ({"x0": [1, 2]}, "x0 must have shape"),
