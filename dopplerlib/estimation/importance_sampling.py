@@ -11,7 +11,7 @@ from .._hints import Count, Positive, checked, up_to
 from .._records import record
 from .._typing import ArrayLike
 from ..kernels import ring_coordinates as kernel
-from ..model.motion import constant_velocity, dwna_gain
+from ..model.motion import dwna_gain, ncv_transition
 from ..model.radar_array import RadarArray
 from ._gaussian_sum_setting import _frame
 from ._student_mixture import StudentMixture, efficiency, normalized
@@ -22,7 +22,7 @@ _BACKWARD = np.array([1.0, 1, 1, -1, -1, -1])  # of a state: that in reversed ti
 _MEMBERS = 100  # of the Gaussian sum that are taken, at most
 _COST = 1e-4  # of uniting two of them: a tenth of that of a filter, which keeps curved ones apart
 _ROUNDS, _ENOUGH = 4, 0.5  # fits, at most, of the proposal; efficiency at which none follows
-_STEADY = 1e-3  # in m/s^2, of the Gaussian sum where the velocity is constant
+_BLOCK = 5  # samples that the Gaussian sum takes together, at most
 _BACK = 9.0  # times the covariance at the end, from which the Gaussian sum goes back
 _NONE = np.nan, np.nan, 0.0, np.nan, np.nan  # where no state was found
 
@@ -137,12 +137,12 @@ def importance_posterior(
     x0 = _checks.exact_shape("x0", _checks.moderate("x0", x0, (6,)), (6,))
     P0 = _checks.exact_shape("P0", _checks.covariance("P0", P0, 6), (6, 6))
     steady = _checks.one_number("sigma_a", sigma_a) == 0
-    motion = {"T": T, "sigma_a": _STEADY if steady else sigma_a, "noise": noise}
+    motion = {"T": T, "sigma_a": sigma_a, "noise": noise, "block": min(_BLOCK, K)}
     z = np.ascontiguousarray(z).reshape(-1, K, N)
     deviation = np.sqrt(variance)
     forward = gaussian_sum(z, array, x0, P0, sigma_f=deviation, every=K, workers=workers, **motion)
 
-    F, _ = constant_velocity(**motion)
+    F = ncv_transition(T, 3, "derivative")
     columns = np.empty((0, 6))
     if not steady:
         G, sigma_a = dwna_gain(np.array([T]), sigma_a, noise)
@@ -177,6 +177,8 @@ def importance_posterior(
         return np.where(np.isnan(likelihood), -np.inf, likelihood + prior), x, P
 
     def one(run, rng):
+        if np.isnan(forward.x[run, -1]).any():
+            return _NONE
         weight, *moments = members(run)
         if not len(weight):
             return _NONE
