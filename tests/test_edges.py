@@ -278,6 +278,7 @@ MEANT = (
     "ekf",
     "gate_bounds",
     "gaussian_sum",
+    "importance_posterior",
     "gaussian_sum_online",
 )  # NaN and infinity mean something there
 HUGE = [1e155, 1e200, 1e308]
