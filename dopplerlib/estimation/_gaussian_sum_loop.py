@@ -9,7 +9,8 @@ import numpy as np
 
 from .._compile import cached_njit, fingerprint
 from ..kernels import doppler, ring_coordinates
-from . import _gaussian_sum_merge, _gaussian_sum_start, _ring_member
+from . import _gaussian_sum_gate, _gaussian_sum_merge, _gaussian_sum_start, _ring_member
+from ._gaussian_sum_gate import refuse
 from ._gaussian_sum_merge import drop, merge
 from ._gaussian_sum_start import settle, start
 from ._ring_member import LOST, compiled, factor, predict, put, put_square, state_at, update
@@ -161,6 +162,17 @@ def _cached(compiled_in):
                 # Of what goes straight all scans are kept, else the newest only.
                 s = blocks if exact and blocks < len(scans) else len(scans) - 1
                 scan, variance = scans[s], variances[s]
+                if blocks > 0:
+                    steps = 0.5 * (last + length)
+                    push = _columns(noise, steps, T)
+                    for m in range(count):
+                        if not predict(x[m], P[m], steps * T, push, r, least, state, G, F, spare):
+                            weight[m] = LOST
+                if setting.limit < np.inf:
+                    lost = refuse(held, held_weights, length, x, P, weight, count, positions, r, c,
+                                  flat, setting.limit, state, G, g)  # fmt: skip
+                    constant += lost
+                    evidence += lost
                 _scan(held, held_weights, length, scan, variance)
                 for n in range(len(scan)):
                     if not np.isnan(scan[n]):
@@ -172,15 +184,11 @@ def _cached(compiled_in):
                                   _MARGIN, x, P, weight)  # fmt: skip
                     evidence = setting.share + constant
                 else:
-                    steps = 0.5 * (last + length)
-                    push = _columns(noise, steps, T)
                     for m in range(count):
-                        if predict(x[m], P[m], steps * T, push, r, least, state, G, F, spare):
+                        if weight[m] > LOST:
                             weight[m] += update(x[m], P[m], scan, variance, positions, r, c, flat,
                                                 _ITERATIONS, state, G, at, before, P_before, g,
                                                 b)  # fmt: skip
-                        else:
-                            weight[m] = LOST
                 count, gained = drop(x, P, weight, count, setting.lightest)
                 evidence += gained
                 if blocks % _BETWEEN == 1:
@@ -215,5 +223,8 @@ def _cached(compiled_in):
 
 
 track = _cached(
-    fingerprint(doppler, ring_coordinates, _ring_member, _gaussian_sum_start, _gaussian_sum_merge)
-)
+    fingerprint(
+        doppler, ring_coordinates, _ring_member, _gaussian_sum_start, _gaussian_sum_merge,
+        _gaussian_sum_gate,
+    )
+)  # fmt: skip

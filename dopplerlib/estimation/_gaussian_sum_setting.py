@@ -37,6 +37,7 @@ class Setting(NamedTuple):
     least: float
     lightest: float
     loss: float
+    limit: float
 
 
 class Bank(NamedTuple):
@@ -73,12 +74,14 @@ class Frame(NamedTuple):
     turn: np.ndarray
 
 
-def prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss):
+def prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss, gate_probability):
     """Return `Frame` and `Setting` of a filter; errors name its arguments."""
     x0 = _checks.exact_shape("x0", _checks.moderate("x0", x0, (6,)), (6,))
     P0 = _checks.exact_shape("P0", _checks.covariance("P0", P0, 6), (6, 6))
     # The frame of the array: origin in the middle, first axis towards the prior.
     center, axes, radius, positions, flat, least = _frame(array, x0)
+    from scipy.special import chdtri  # upper-tail quantile of chi-square
+
     frame = Frame(np.concatenate([center, np.zeros(3)]), np.kron(np.eye(2), axes))
     turn = frame.turn
     ahead = (block + 1) / 2 * T  # from the prior to the middle of the first block
@@ -97,10 +100,11 @@ def prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss):
     cell = np.prod(widths / _WIDTH) * np.sqrt(3) / 2
     overlap = np.sum(np.log(np.sqrt(2 * np.pi) * widths)) - np.log(cell)
     prior = -0.5 * float(np.linalg.slogdet(P)[1])
+    limit = np.inf if gate_probability is None else float(chdtri(1, 1 - gate_probability))
     return frame, Setting(
         np.ascontiguousarray(positions), radius, float(array.doppler_per_speed), float(T), block,
         columns, flat, mean, (information + information.T) / 2,
-        prior, prior - float(overlap), grid, widths, least, float(lightest), float(loss),
+        prior, prior - float(overlap), grid, widths, least, float(lightest), float(loss), limit,
     )  # fmt: skip
 
 

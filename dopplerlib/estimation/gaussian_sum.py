@@ -69,6 +69,7 @@ def gaussian_sum(
     block: Count = 5,
     lightest: Probability = 1e-5,
     loss: Positive = 1e-3,
+    gate_probability: Probability | None = None,
     workers: Count | None = None,
 ) -> GaussianSumTrack:
     """Filter records of Doppler shifts with a sum of Gaussians in ring coordinates.
@@ -107,6 +108,10 @@ def gaussian_sum(
         Weight below which a Gaussian is dropped.
     loss : float
         Kullback-Leibler cost, at most, of uniting two Gaussians.
+    gate_probability : float, optional
+        Probability with which a right sample passes. A sample of one sensor whose distance from the
+        filter's prediction is less likely is left out, in the first block one that is as far from
+        its median. If None all count.
     workers : int, optional
         Threads among which the runs are shared; one for each processor if None. The result does
         not depend on it.
@@ -150,7 +155,9 @@ def gaussian_sum(
     z = _measurements(z, array)
     weights = 1 / _variance(sigma_f, z.shape[-2:])
     batch, (K, N) = z.shape[:-2], z.shape[-2:]
-    frame, setting = prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss)
+    frame, setting = prepare(
+        array, x0, P0, T, sigma_a, noise, block, lightest, loss, gate_probability
+    )
     z = np.ascontiguousarray(z).reshape(-1, K, N)
     for value in (z, weights):
         value.flags.writeable = False
@@ -185,6 +192,7 @@ def gaussian_sum_online(
     block: Count = 5,
     lightest: Probability = 1e-5,
     loss: Positive = 1e-3,
+    gate_probability: Probability | None = None,
 ) -> Callable[[ArrayLike], GaussianSumTrack]:
     """Prepare the filter of `gaussian_sum` for samples that come one by one.
 
@@ -206,7 +214,7 @@ def gaussian_sum_online(
         Process noise, see `constant_velocity`.
     mixture, block : int
         See `gaussian_sum`.
-    lightest, loss : float
+    lightest, loss, gate_probability : float
         See `gaussian_sum`.
 
     Returns
@@ -235,7 +243,9 @@ def gaussian_sum_online(
     """
     weights = 1 / _variance(sigma_f, (1, len(array)))
     weights.flags.writeable = False
-    frame, setting = prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss)
+    frame, setting = prepare(
+        array, x0, P0, T, sigma_a, noise, block, lightest, loss, gate_probability
+    )
     bank = new_bank(setting)
 
     @_checks.quiet

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from dopplerlib import RadarArray, constant_velocity, doppler_jacobian, doppler_shift, ekf
 from dopplerlib.estimation.gaussian_sum import gaussian_sum, gaussian_sum_online
@@ -171,3 +172,36 @@ def test_an_estimate_knows_nothing_of_later_samples():
 def test_what_it_cannot_track_is_refused(array, x0, message):
     with pytest.raises(ValueError, match=message):
         gaussian_sum(np.zeros((5, len(array))), array, x0, P0, T, 0.4, 0.4)
+
+
+@pytest.mark.parametrize("array", [ARRAY, OFF_PLANE])
+def test_what_the_gate_refuses_counts_as_missing(array):
+    """To the last bit: wrong samples, also of the first block, and none where they stood."""
+    rng = np.random.default_rng(11)
+    _, z = records(3, 60, rng, array=array)
+    wrong = rng.random(z.shape) < 0.1
+    # Refused by others than the median they come in two of five at most.
+    wrong[:, :5] = np.arange(5)[:, None] == [0, 1, 2, 3, 4, 0]
+    off = np.where(wrong, z + rng.choice([-1, 1], z.shape) * rng.uniform(60, 300, z.shape), z)
+    setting = array, X0, P0, T, 0.4, 0.4
+    got = gaussian_sum(off, *setting, gate_probability=0.999)
+    want = gaussian_sum(np.where(wrong, np.nan, z), *setting, gate_probability=0.999)
+    np.testing.assert_array_equal(got.x, want.x)
+    np.testing.assert_array_equal(got.P, want.P)
+    # As evidence each counts as one at the edge of the gate, whose deviation is 0.4 Hz at least.
+    edge = 0.5 * (chi2.ppf(0.999, 1) + np.log(2 * np.pi * 0.4**2))
+    lost = want.evidence[:, -1] - got.evidence[:, -1]
+    assert lost.min() > edge * wrong.sum(axis=(1, 2)).min()
+
+
+def test_a_gate_so_wide_that_nothing_is_outside_is_none():
+    _, z = records(2, 60, np.random.default_rng(12))
+    none = gaussian_sum(z, ARRAY, X0, P0, T, 0.4, 0.4)
+    wide = gaussian_sum(z, ARRAY, X0, P0, T, 0.4, 0.4, gate_probability=1 - 1e-15)
+    for name in ("x", "P", "evidence"):
+        np.testing.assert_array_equal(getattr(wide, name), getattr(none, name))
+    update = gaussian_sum_online(ARRAY, X0, P0, T, 0.4, 0.4, gate_probability=0.99)
+    narrow = gaussian_sum(z[0], ARRAY, X0, P0, T, 0.4, 0.4, gate_probability=0.99)
+    for k in range(60):
+        np.testing.assert_array_equal(update(z[0, k]).x, narrow.x[k])
+    assert not np.array_equal(narrow.x[-1], none.x[0, -1])
