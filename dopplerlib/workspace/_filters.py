@@ -83,14 +83,14 @@ def extended(z, s, x, P):
 
 def iterated(z, s, x, P):
     """Filter by the iterated extended Kalman filter."""
-    f, F, Q, h, H = _in_state(s)
+    f, F, Q, h, H = in_state(s)
     track = ekf_records(z, f, F, Q, h, H, s.R, x, P, iterations=ITERATIONS)
     return track.x, track.P
 
 
 def cubature(z, s, x, P, iterations=1):
     """Filter by sigma points."""
-    f, _, Q, h, _ = _in_state(s)
+    f, _, Q, h, _ = in_state(s)
     track = ukf(z, f, Q, h, s.R, x, P, iterations=iterations)
     return track.x, track.P
 
@@ -125,7 +125,7 @@ def ring_posterior_linearization(z, s, x, P):
     return ring_cubature(z, s, x, P, ITERATIONS)
 
 
-def _in_state(s):
+def in_state(s):
     """Return f, F, Q, h and H of the Cartesian model."""
     F, Q = constant_velocity(INTERVAL, s.sigma_a, "per_axis")
     return (

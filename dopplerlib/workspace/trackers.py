@@ -14,6 +14,7 @@ from .._hints import Count, Covariance, Positive, State, between, checked, exact
 from .._typing import FloatArray
 from ..model.radar_array import RadarArray
 from . import _filters as f
+from . import _robust_filters as r
 from .targets import ARRAY, PRIOR_COVARIANCE, PRIOR_MEAN, SIGMA_A, SIGMA_F
 
 _STILL = 1e-6  # in m/s^2: an acceleration that moves nothing, for filters that ask for one
@@ -46,6 +47,19 @@ TRACKERS = {
     "batch": _Tracker("maximum likelihood of all samples", f.batch),
     "particles": _Tracker("particle filter", f.particles),
     "bank": _Tracker("Gaussian sum", f.bank),
+    "gated_bank": _Tracker("Gaussian sum, gate", r.gated_bank),
+    "moving_bank": _Tracker("Gaussian sums, gate, three motions", r.moving_bank),
+    "gated_start": _Tracker("EKF, gated start", f.extended, r.from_gated_bayes),
+    "gated_start_ukf": _Tracker("UKF, gated start", f.cubature, r.from_gated_bayes),
+    "gate_paper": _Tracker(
+        "EKF, gate, two-sided, 95 %", r.gated("two-sided", r.PAPER), r.from_gated_bayes
+    ),
+    "gate_upper": _Tracker("EKF, gate, 99.9 %", r.gated("upper"), r.from_gated_bayes),
+    "gate_soft": _Tracker("EKF, soft gate", r.gated("soft"), r.from_gated_bayes),
+    "gate_each": _Tracker("EKF, gate, each sensor", r.robust("gate"), r.from_gated_bayes),
+    "huber": _Tracker("EKF, Huber", r.robust("huber"), r.from_gated_bayes),
+    "student_t": _Tracker("EKF, Student t", r.robust("student-t"), r.from_gated_bayes),
+    "adaptive": _Tracker("EKF, adaptive R", r.robust("adaptive"), r.from_gated_bayes),
 }
 
 
@@ -81,7 +95,14 @@ def track_targets(
         "iekf", "iekf_bayes": iterated thrice. "ukf": cubature points. "iplf": posterior
         linearization, thrice. With "ring_" in front: the same in ring coordinates. "batch": at each
         output the likeliest straight path of all samples, without a prior. "particles": regularized
-        particle filter, 3000 particles. "bank": `gaussian_sum`.
+        particle filter, 3000 particles. "bank": `gaussian_sum`; "gated_bank": with a gate of
+        99.9 %; "moving_bank": three of these for accelerations of 0.4, 4 and 40 m/s^2, weighed by
+        their evidence, whatever `sigma_a` is.
+
+        "gated_start": "ekf_bayes" with that gate at the start, "gated_start_ukf" the same with
+        cubature points; from the same start the gates of `ekf`, "gate_paper" (two-sided, 95 %),
+        "gate_upper" and "gate_soft" (99.9 %), and the methods of `robust_ekf`, "gate_each"
+        (99.9 %), "huber", "student_t" and "adaptive".
     every : int
         Estimates are returned at the samples every - 1, 2 every - 1, ...
     sigma_a : float
@@ -138,11 +159,12 @@ def _started(tracker, z, s):
     first, x, P = tracker.start(z, s)
     if z.shape[1] <= first:
         raise ValueError(f"z must have more than {first} samples for this tracker, got {z.shape}")
-    found = tracker.filter(z[:, first:], s, x, P)
-    outputs = []
-    for start, after in zip((x, P), found, strict=True):
-        before = np.full((len(z), first, *start.shape[1:]), np.nan)
-        if first:
-            before[:, -1] = start
-        outputs.append(np.concatenate([before, after], axis=1)[:, s.every - 1 :: s.every])
-    return outputs
+    begun = np.isfinite(x).all(axis=-1)  # the others have lost the target before
+    outputs = [np.full((len(z), z.shape[1], *start.shape[1:]), np.nan) for start in (x, P)]
+    if begun.any():
+        found = tracker.filter(z[begun, first:], s, x[begun], P[begun])
+        for output, start, after in zip(outputs, (x, P), found, strict=True):
+            if first:
+                output[:, first - 1] = start
+            output[begun, first:] = after
+    return [output[:, s.every - 1 :: s.every] for output in outputs]

@@ -16,8 +16,12 @@ from dopplerlib.workspace.targets import (
 )
 from dopplerlib.workspace.trackers import TRACKERS, track_targets
 
-STARTED = {"paper", "own_covariance", "ekf_bayes", "iekf_bayes", "ring_iekf_bayes"}
-FROM_PRIOR = sorted(set(TRACKERS) - STARTED - {"batch"})
+DOUBTING = {
+    "gated_start", "gated_start_ukf", "gate_paper", "gate_upper", "gate_soft", "gate_each",
+    "huber", "student_t", "adaptive",
+}  # fmt: skip
+STARTED = {"paper", "own_covariance", "ekf_bayes", "iekf_bayes", "ring_iekf_bayes"} | DOUBTING
+FROM_PRIOR = sorted(set(TRACKERS) - STARTED - {"batch", "moving_bank"})
 X0 = np.array([0.6, 0.1, 0.1, -0.7, 0.05, 0.0])
 NARROW = np.diag([2e-3, 2e-3, 2e-3, 5e-3, 5e-3, 5e-3]) ** 2
 
