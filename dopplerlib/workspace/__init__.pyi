@@ -1,5 +1,6 @@
 # Made by python -m tools.stubs; do not edit.
 from . import comparison as comparison
+from . import errors as errors
 from . import faults as faults
 from . import stopping as stopping
 from . import targets as targets

@@ -26,7 +26,7 @@ SLOW = {
     "systems.mittermaier2016.noise_sweep.run_noise_sweep",
     "systems.mittermaier2016.published.Reported",
     "systems.mittermaier2016.start.samples_needed",
-    "workspace.comparison.ErrorSummary",
+    "workspace.errors.ErrorSummary",
     "workspace.comparison.case_errors",
     "workspace.trackers.track_targets",
 }

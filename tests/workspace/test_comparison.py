@@ -5,14 +5,9 @@ import pytest
 from scipy.stats import chi2, norm
 
 from dopplerlib import doppler_shift
-from dopplerlib.workspace.comparison import (
-    AXIS_95,
-    EVERY,
-    NEES_95,
-    TrackErrors,
-    case_errors,
-    error_summary,
-)
+from dopplerlib.workspace.comparison import case_errors
+from dopplerlib.workspace.errors import AXIS_95, EVERY, NEES_95, TrackErrors, error_summary
+from dopplerlib.workspace.targets import ARRAY
 
 
 def test_constants_are_the_quantiles():
@@ -96,5 +91,5 @@ def test_the_errors_are_those_of_the_tracker(monkeypatch):
     np.testing.assert_allclose(errors.nees, expected)
     np.testing.assert_allclose(errors.position[1], 0.5)
     np.testing.assert_allclose(errors.velocity[1], 0.1)
-    noise = (paths[0] - doppler_shift(drawn[0], comparison.ARRAY)) / 0.4
+    noise = (paths[0] - doppler_shift(drawn[0], ARRAY)) / 0.4
     assert abs(noise.std() - 1) < 0.05
