@@ -32,7 +32,7 @@ def _straight(z, weights, x, positions, c, T):
 
 
 @njit(nogil=True, error_model="numpy")
-def _crooked(z, weights, x, positions, c, T, noise, P, H, b, d):
+def _crooked(z, weights, x, positions, c, T, Q, P, H, b, d):
     """Return the same of all paths from `x` on; write the estimate at their end to `x` and `P`."""
     total = 0.0
     for i in range(6):
@@ -47,10 +47,8 @@ def _crooked(z, weights, x, positions, c, T, noise, P, H, b, d):
             for i in range(6):
                 for j in range(3):
                     P[i, j] += T * P[i, 3 + j]
-            for column in noise:
-                for i in range(6):
-                    for j in range(6):
-                        P[i, j] += column[i] * column[j]
+                for j in range(6):
+                    P[i, j] += Q[i, j]
         for n in range(len(positions)):
             s = positions[n]
             H[n, 6], H[n, 0], H[n, 1], H[n, 2], H[n, 3], H[n, 4], H[n, 5] = _gradient(
@@ -58,21 +56,26 @@ def _crooked(z, weights, x, positions, c, T, noise, P, H, b, d):
             )
         for i in range(6):
             d[i] = 0.0
+        volume = 1.0
         for n in range(len(positions)):
             if weights[k, n] > 0.0:
-                innovation, S = z[k, n] - H[n, 6], 1 / weights[k, n]
+                innovation, growth = z[k, n] - H[n, 6], 1.0
                 for i in range(6):
                     innovation -= H[n, i] * d[i]
-                    b[i] = 0.0
+                    s = 0.0
                     for j in range(6):
-                        b[i] += P[i, j] * H[n, j]
-                    S += H[n, i] * b[i]
-                total -= 0.5 * (innovation * innovation / S + np.log(S * weights[k, n]))
+                        s += P[i, j] * H[n, j]
+                    b[i] = s
+                    growth += weights[k, n] * H[n, i] * s
+                inverse = weights[k, n] / growth
+                total -= 0.5 * innovation * innovation * inverse
+                volume *= growth
                 for i in range(6):
-                    gain = b[i] / S
+                    gain = b[i] * inverse
                     d[i] += gain * innovation
                     for j in range(6):
                         P[i, j] -= gain * b[j]
+        total -= 0.5 * np.log(volume)
         for i in range(6):
             x[i] += d[i]
     return total
@@ -82,7 +85,7 @@ def _cached(compiled_in):
     """Return the likelihood of many states, compiled once for all processes."""
 
     @cached_njit
-    def record_likelihood(z, weights, x, positions, c, T, noise, likelihood, P):
+    def record_likelihood(z, weights, x, positions, c, T, Q, likelihood, P):
         """Write the log likelihood of a record (K, N) given each state of `x` (S, 6).
 
         `x` and `P` (S, 6, 6) become mean and covariance of the state at the last sample.
@@ -90,10 +93,8 @@ def _cached(compiled_in):
         compiled_in  # noqa: B018  (see fingerprint)
         H, b, d = np.empty((len(positions), 7)), np.empty(6), np.empty(6)
         for i in range(len(x)):
-            if len(noise):
-                likelihood[i] = _crooked(
-                    z, weights, x[i], positions, c, T, noise, P[i], H, b, d
-                )  # fmt: skip
+            if Q.any():
+                likelihood[i] = _crooked(z, weights, x[i], positions, c, T, Q, P[i], H, b, d)
             else:
                 likelihood[i] = _straight(z, weights, x[i], positions, c, T)
                 P[i] = 0.0
