@@ -15,6 +15,7 @@ ORDER = [
     "_checks",
     "_hints",
     "_compile",
+    "_cholesky",
     "_progress",
     "_toml",
     "_files",

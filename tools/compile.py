@@ -15,6 +15,7 @@ from dopplerlib.estimation.importance_sampling import importance_posterior
 from dopplerlib.evaluation.path_bounds import path_crlb
 from dopplerlib.signal.validity import valid_samples
 from dopplerlib.systems import valarmathi
+from dopplerlib.workspace.layouts import layout_quality
 from tools.command import parser, start
 
 
@@ -33,6 +34,7 @@ def main(argv=None):
         rng = np.random.default_rng(1)
         importance_posterior(z[0], array, start, np.eye(6), 0.001, sigma_a, 1.0, rng=rng, draws=100)
     path_crlb(np.ones((2, 6)), array, 1.0, np.eye(6))
+    layout_quality(start[None], array)
     ml_frequency(np.ones(16, complex), 1.0)
     valid_samples(np.arange(64.0))
     rng = np.random.default_rng(1)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ._ring_member import LOST, compiled, measure, state_at
+from .._cholesky import compiled
+from ._ring_member import LOST, measure, state_at
 
 
 @compiled

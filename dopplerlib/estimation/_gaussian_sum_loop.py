@@ -7,13 +7,15 @@ the middle of its block: the mean of a few shifts is that of the middle.
 
 import numpy as np
 
+from .. import _cholesky
+from .._cholesky import compiled, factor
 from .._compile import cached_njit, fingerprint
 from ..kernels import doppler, ring_coordinates
 from . import _gaussian_sum_gate, _gaussian_sum_merge, _gaussian_sum_start, _ring_member
 from ._gaussian_sum_gate import refuse
 from ._gaussian_sum_merge import drop, merge
 from ._gaussian_sum_start import settle, start
-from ._ring_member import LOST, compiled, factor, predict, put, put_square, state_at, update
+from ._ring_member import LOST, predict, put, put_square, state_at, update
 
 ALONE = 2  # members with which samples are taken one by one
 _BETWEEN = 2  # blocks from one merging to the next
@@ -224,7 +226,7 @@ def _cached(compiled_in):
 
 track = _cached(
     fingerprint(
-        doppler, ring_coordinates, _ring_member, _gaussian_sum_start, _gaussian_sum_merge,
-        _gaussian_sum_gate,
+        doppler, ring_coordinates, _cholesky, _ring_member, _gaussian_sum_start,
+        _gaussian_sum_merge, _gaussian_sum_gate,
     )
 )  # fmt: skip

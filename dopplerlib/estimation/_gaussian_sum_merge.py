@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ._ring_member import LOST, compiled, factor, put, put_square
+from .._cholesky import compiled, factor
+from ._ring_member import LOST, put, put_square
 
 
 @compiled

@@ -6,8 +6,9 @@ fitted again to all that was measured, member by member.
 
 import numpy as np
 
+from .._cholesky import compiled, factor, solve
 from ..kernels import doppler as kernel
-from ._ring_member import LOST, compiled, factor, inline, put, solve, state_at
+from ._ring_member import LOST, inline, put, state_at
 
 _STEPS, _HALVINGS, _GAIN = 4, 5, 1e-3  # of a descent
 _EQUAL = 0.1  # squared distance of two modes that are one, in deviations

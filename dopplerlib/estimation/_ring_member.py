@@ -3,11 +3,11 @@
 import numpy as np
 from numba import njit
 
+from .._cholesky import compiled
 from ..kernels import ring_coordinates as kernel
 
 LOST = -np.inf  # logarithm of the weight of a member that is none
 
-compiled = njit(nogil=True, error_model="numpy")
 inline = njit(forceinline=True, error_model="numpy")
 _shift = inline(kernel.shift_and_gradient)
 _to_state = inline(kernel.to_state)
@@ -153,35 +153,3 @@ def update(x, P, z, variance, positions, r, c, flat, iterations, state, G, at, b
     if not np.isfinite(likelihood):
         return LOST
     return likelihood
-
-
-@compiled
-def factor(A, L):
-    """Write the Cholesky factor of `A` to `L` and return the log of its determinant, or NaN."""
-    total = 0.0
-    for i in range(6):
-        for j in range(i + 1):
-            s = A[i, j]
-            for k in range(j):
-                s -= L[i, k] * L[j, k]
-            if i == j:
-                if not s > 0.0:
-                    return np.nan
-                L[i, i] = np.sqrt(s)
-                total += np.log(s)
-            else:
-                L[i, j] = s / L[j, j]
-    return total
-
-
-@compiled
-def solve(L, v):
-    """Solve L L' v = v in place."""
-    for i in range(6):
-        for k in range(i):
-            v[i] -= L[i, k] * v[k]
-        v[i] /= L[i, i]
-    for i in range(5, -1, -1):
-        for k in range(i + 1, 6):
-            v[i] -= L[k, i] * v[k]
-        v[i] /= L[i, i]
