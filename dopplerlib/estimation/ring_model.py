@@ -117,6 +117,8 @@ class RingModel:
     def state(self, xi: ArrayLike, P: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return mean and covariance of the states of Gaussian coordinates, by cubature.
 
+        As long as range is hardly known, the 12 points claim too much: draws tell more.
+
         Parameters
         ----------
         xi : array_like, shape (..., 6)
