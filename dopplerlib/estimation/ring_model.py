@@ -107,6 +107,7 @@ class RingModel:
         ndarray, shape (..., 6, 6)
         """
         x0, P0 = _checks.moderate("x0", x0, (6,)), _checks.covariance("P0", P0, 6, definite=False)
+        _checks.check_leading(x0=(x0, 1), P0=(P0, 2))
         points, weight = _hermite()
         xi = self._coordinates(x0[..., None, :] + points @ covariances.square_root(P0).mT)
         mean = weight @ xi
@@ -133,6 +134,7 @@ class RingModel:
         ndarray, shape (..., 6, 6)
         """
         xi, P = _checks.moderate("xi", xi, (6,)), _checks.covariance("P", P, 6, definite=False)
+        _checks.check_leading(xi=(xi, 1), P=(P, 2))
         return sigma_points.moments(self._state, xi, P, sigma_points.scaling(6))
 
     @_checks.quiet

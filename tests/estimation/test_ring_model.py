@@ -119,3 +119,17 @@ def test_coordinates_without_a_state_are_taken_for_some_with_one():
 def test_an_array_off_the_plane_is_refused(positions):
     with pytest.raises(ValueError, match=r"^array must have its sensors in the plane x = 0"):
         RingModel(RadarArray(positions), T, SIGMA)
+
+
+@pytest.mark.parametrize(
+    ("method", "arguments", "match"),
+    [
+        ("f", [[1.0, 2]], r"^xi must have shape"),
+        ("h", [np.full(6, np.inf)], "^xi must be finite"),
+        ("start", [STATES, np.stack([np.eye(6)] * 3)], "^x0, P0 must have leading axes"),
+        ("state", [STATES, -np.eye(6)], "^P must be positive semidefinite"),
+    ],
+)
+def test_bad_input_is_named(method, arguments, match):
+    with pytest.raises(ValueError, match=match):
+        getattr(RingModel(RING, T, SIGMA), method)(*arguments)
