@@ -1,9 +1,10 @@
 """Cholesky factors of 6 x 6 matrices, compiled, for loops over many of them."""
 
 import numpy as np
-from numba import njit
 
-compiled = njit(nogil=True, error_model="numpy")
+from ._compile import inner_njit
+
+compiled = inner_njit
 
 
 @compiled

@@ -8,9 +8,8 @@ reordered, so a run gives the same bits alone and among ten thousand.
 from functools import cache
 
 import numpy as np
-from numba import njit
 
-from .._compile import cached_njit, fingerprint
+from .._compile import cached_njit, fingerprint, inner_njit
 from ..kernels import ekf as kernel
 
 LANES = 16
@@ -21,7 +20,7 @@ _ROWS = kernel.ROWS + 21
 # A pivot of a covariance that is a smaller share of its variance is rounding.
 _ROUNDING = 8 * np.finfo(float).eps
 
-_inline = njit(forceinline=True, error_model="numpy")
+_inline = inner_njit(forceinline=True)
 _predict = _inline(kernel.predict)
 _add_noise = _inline(kernel.add_noise)
 _linearize = _inline(kernel.linearize)

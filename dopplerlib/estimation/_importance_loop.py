@@ -5,17 +5,16 @@ millimeters wide, along which an EKF of zero start covariance is exact enough.
 """
 
 import numpy as np
-from numba import njit
 
-from .._compile import cached_njit, fingerprint
+from .._compile import cached_njit, fingerprint, inner_njit
 from ..kernels import doppler as kernel
 
-_inline = njit(forceinline=True, error_model="numpy")
+_inline = inner_njit(forceinline=True)
 _shift = _inline(kernel.doppler_shift)
 _gradient = _inline(kernel.doppler_shift_and_gradient)
 
 
-@njit(nogil=True, error_model="numpy")
+@inner_njit
 def _straight(z, weights, x, positions, c, T):
     """Return the log likelihood, but for a constant, of a straight path; move `x` to its end."""
     total = 0.0
@@ -31,7 +30,7 @@ def _straight(z, weights, x, positions, c, T):
     return total
 
 
-@njit(nogil=True, error_model="numpy")
+@inner_njit
 def _crooked(z, weights, x, positions, c, T, Q, P, H, b, d):
     """Return the same of all paths from `x` on; write the estimate at their end to `x` and `P`."""
     total = 0.0

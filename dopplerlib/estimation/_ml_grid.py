@@ -15,12 +15,13 @@ Arrays have the grid last, so that the inner loops run over neighbors in memory.
 
 import numpy as np
 
-from ._ml_refine import compiled, copy
+from .._compile import inner_njit
+from ._ml_refine import copy
 
 STARTS = 6  # local minima of the grid that are refined; three or four are usual
 
 
-@compiled
+@inner_njit
 def project(grid, w, positions, c, lower, upper, Q, R, bound, order, rate):
     """Prepare the linear problem of the velocity at every grid point.
 
@@ -78,7 +79,7 @@ def project(grid, w, positions, c, lower, upper, Q, R, bound, order, rate):
                 row += 1
 
 
-@compiled
+@inner_njit
 def scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
     """Score every grid point by the cost of its best velocity in the box.
 
@@ -131,7 +132,7 @@ def scan(mean, w, slope, spread, c, Q, R, bound, rate, v, score):
             score[p] += spread[n] * r * r
 
 
-@compiled
+@inner_njit
 def lowest_minima(score, shape, low, spare, chosen):
     """Write the lowest local minima to `chosen`; return their number."""
     copy(score, low)

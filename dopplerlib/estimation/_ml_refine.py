@@ -9,8 +9,8 @@ whose damped minimum in the box is the step: (H + factor diag H) d = -g where th
 """
 
 import numpy as np
-from numba import njit
 
+from .._compile import inner_njit
 from ..kernels import doppler as kernel
 
 # A Python integer as an argument would make numba compile a function for this very value.
@@ -24,20 +24,17 @@ TOLERANCE = 1e-12  # stop when a step promises less, relative to the cost
 
 NOISE = 1e-15  # relative rounding error of a predicted measurement
 
-# Without wrappers for callers from outside, which take a third of the time to compile.
-compiled = njit(nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-
-_shift_and_gradient = njit(forceinline=True, error_model="numpy")(kernel.doppler_shift_and_gradient)
+_shift_and_gradient = inner_njit(forceinline=True)(kernel.doppler_shift_and_gradient)
 
 
-@compiled
+@inner_njit
 def copy(source, target):
     """Copy an array; written as assignment to a slice it compiles for seconds."""
     for i in range(source.size):
         target[i] = source[i]
 
 
-@compiled
+@inner_njit
 def normal_equations(x, t, z, w, positions, c, H, g):
     """Fill H = J'J and g = J'r of the residuals r = w (h(F(t) x) - z); return the cost r'r."""
     H[:] = 0.0
@@ -71,7 +68,7 @@ def normal_equations(x, t, z, w, positions, c, H, g):
     return cost
 
 
-@compiled
+@inner_njit
 def _solve(H, damping, rhs, held, L, d):
     """Solve (H + diag(damping)) d = rhs for the components not held; those of `d` that are stay.
 
@@ -114,7 +111,7 @@ def _solve(H, damping, rhs, held, L, d):
         d[free[a]] = s
 
 
-@compiled
+@inner_njit
 def _boxed_step(H, g, damping, x, lower, upper, first, held, L, d):
     """Find the step d of components `first` to 5 that lowers d'(H + damping)d/2 + g'd in the box.
 
@@ -146,13 +143,13 @@ def _boxed_step(H, g, damping, x, lower, upper, first, held, L, d):
         d[offender] = (upper[offender] if d[offender] > 0 else lower[offender]) - x[offender]
 
 
-@compiled
+@inner_njit
 def move(x, d, lower, upper, moved):
     for i in range(6):
         moved[i] = min(max(x[i] + d[i], lower[i]), upper[i])
 
 
-@compiled
+@inner_njit
 def refine(x, t, z, w, positions, c, lower, upper, size, iterations):
     """Improve x in place by Levenberg-Marquardt in the box; return its cost and convergence.
 
@@ -205,7 +202,7 @@ def refine(x, t, z, w, positions, c, lower, upper, size, iterations):
     return cost, False
 
 
-@compiled
+@inner_njit
 def grow(x, t, z, w, window, positions, c, lower, upper, size):
     """Refine x on the first `window` samples, then on four times as many, up to nearly all.
 

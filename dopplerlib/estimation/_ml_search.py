@@ -15,15 +15,15 @@ Costs are chi-square: sums of squared residuals over their standard deviations.
 
 import numpy as np
 
-from .._compile import cached_njit, fingerprint
+from .._compile import cached_njit, fingerprint, inner_njit
 from ..kernels import doppler as kernel
 from . import _ml_grid, _ml_refine, _ml_valley
 from ._ml_grid import STARTS, lowest_minima, project, scan
-from ._ml_refine import ITERATIONS, compiled, copy, grow, move, normal_equations, refine
+from ._ml_refine import ITERATIONS, copy, grow, move, normal_equations, refine
 from ._ml_valley import STEPS, differ, lowest, settle, walk, weakest
 
 
-@compiled
+@inner_njit
 def _summarize(times, z, w, window, mean_t, mean_z, mean_w, slope, spread):
     """Reduce every sensor to the mean and the slope of its first samples.
 
@@ -70,7 +70,7 @@ def _summarize(times, z, w, window, mean_t, mean_z, mean_w, slope, spread):
     return seen
 
 
-@compiled
+@inner_njit
 def _search(z, deviations, times, window, positions, c, lower, upper, grid, shape, center, radius,
            singular, needed, x, information, cost, converged, second_x, second_cost):  # fmt: skip
     """Fill the outputs, one row a run.

@@ -6,11 +6,11 @@ close together, or none at all.
 
 import numpy as np
 
+from .._compile import inner_njit
 from ._ml_refine import (
     ALL,
     _boxed_step,
     _solve,
-    compiled,
     copy,
     move,
     normal_equations,
@@ -34,7 +34,7 @@ DISTINCT = 1e-3  # two states differ if a component does by this share of the bo
 TIE = 1e-9  # relative difference between equal costs
 
 
-@compiled
+@inner_njit
 def weakest(H, lower, upper, start, held, L, e):
     """Find the direction e that H determines least; return its eigenvalue, H scaled to ones.
 
@@ -75,12 +75,12 @@ def weakest(H, lower, upper, start, held, L, e):
     return value / norm  # Rayleigh quotient v'C v / v'v
 
 
-@compiled
+@inner_njit
 def _distance(p, center):
     return np.sqrt((p[0] - center[0]) ** 2 + (p[1] - center[1]) ** 2 + (p[2] - center[2]) ** 2)
 
 
-@compiled
+@inner_njit
 def differ(x, other, lower, upper):
     """Return the first component that differs clearly between two states, or -1."""
     for i in range(6):
@@ -89,7 +89,7 @@ def differ(x, other, lower, upper):
     return -1
 
 
-@compiled
+@inner_njit
 def lowest(states, costs, taken, lower, upper):
     """Return the number of the best state not taken, or -1.
 
@@ -114,7 +114,7 @@ def lowest(states, costs, taken, lower, upper):
     return best
 
 
-@compiled
+@inner_njit
 def walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, center, radius,
           path, cost):  # fmt: skip
     """Follow the weakest direction of x both ways; return the range of `path` that was filled.
@@ -161,7 +161,7 @@ def walk(x, t, z, w, still_t, still_z, still_w, positions, c, lower, upper, cent
     return first, last
 
 
-@compiled
+@inner_njit
 def settle(x, t, z, w, positions, c, lower, upper):
     """Move x among equally likely states to the one nearest to the center of the box.
 

@@ -1,14 +1,14 @@
 """Ring coordinates, compiled: state, shift, motion and the algebra of 6 x 6 matrices."""
 
 import numpy as np
-from numba import njit
 
 from .._cholesky import compiled
+from .._compile import inner_njit
 from ..kernels import ring_coordinates as kernel
 
 LOST = -np.inf  # logarithm of the weight of a member that is none
 
-inline = njit(forceinline=True, error_model="numpy")
+inline = inner_njit(forceinline=True)
 _shift = inline(kernel.shift_and_gradient)
 _to_state = inline(kernel.to_state)
 _moved = inline(kernel.moved)

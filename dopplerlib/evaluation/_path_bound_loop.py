@@ -1,12 +1,11 @@
 """The covariance of an EKF that is linearized at the true path, compiled: no data, no states."""
 
 import numpy as np
-from numba import njit
 
-from .._compile import cached_njit, fingerprint
+from .._compile import cached_njit, fingerprint, inner_njit
 from ..kernels import ekf as kernel
 
-_inline = njit(forceinline=True, error_model="numpy")
+_inline = inner_njit(forceinline=True)
 _predict = _inline(kernel.predict)
 _add_noise = _inline(kernel.add_noise)
 _linearize = _inline(kernel.linearize)

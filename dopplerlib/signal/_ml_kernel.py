@@ -11,9 +11,8 @@ Frequencies are counted in bins of the unpadded transform, u = f n / fs.
 """
 
 import numpy as np
-from numba import njit
 
-from .._compile import cached_njit
+from .._compile import cached_njit, inner_njit
 
 BLOCK = 16  # samples that share a phase; each of their sums is independent of the other five
 # 3 dB: how far a peak may rise above its value on the grid. A tone's rises by 1.5 dB; the rest is
@@ -24,7 +23,7 @@ SPARE = 10**0.3
 STOP = 1e-3
 STEPS = 60  # by bisection alone the bracket of one bin has shrunk to rounding by then
 
-_inline = njit(forceinline=True, error_model="numpy")
+_inline = inner_njit(forceinline=True)
 
 
 @_inline

@@ -6,9 +6,8 @@ found to be no measurement.
 """
 
 import numpy as np
-from numba import njit
 
-from .._compile import cached_njit
+from .._compile import cached_njit, inner_njit
 
 BLOCK = 32  # samples that show a branch's noise
 LANES = 64  # blocks that are worked on at a time
@@ -46,8 +45,6 @@ def middle_network(n):
 
 
 _JERKS, _POWERS = middle_network(BLOCK - 4), middle_network(len(_BINS))
-
-_inner = njit(nogil=True, error_model="numpy")
 
 
 @cached_njit
@@ -106,7 +103,7 @@ def survey(rows, good, ends, counts, step, same, longest):
             _put(run, longest[r])
 
 
-@_inner
+@inner_njit
 def _put(value, ascending):
     """Let a value that is larger than the first one take its place among them."""
     place = 0
@@ -176,7 +173,7 @@ def noise(rows, good, first, variance):
                 variance[r, b + m] = min(by_jerk, by_floor) if whole else np.nan
 
 
-@_inner
+@inner_njit
 def _sort(values, pairs):
     """Exchange values (n, LANES) where the first of a pair of them is larger, pair by pair."""
     for p in range(len(pairs)):
@@ -209,7 +206,7 @@ def standing(rows, good, first, size, limit, still):
             still[r, b] = total <= 1.001 * enough and _stands(rows[r], good[r], a, size, enough)
 
 
-@_inner
+@inner_njit
 def _stands(row, good, a, size, enough):
     """Return whether the squares about the mean of a block are less than `enough` in sum."""
     mean = 0.0

@@ -7,14 +7,13 @@
 from math import erfc, sqrt
 
 import numpy as np
-from numba import njit
 
 from .. import _cholesky
 from .._cholesky import compiled, factor, solve
-from .._compile import cached_njit, fingerprint
+from .._compile import cached_njit, fingerprint, inner_njit
 from ..kernels import doppler as kernel
 
-_inline = njit(forceinline=True, error_model="numpy")
+_inline = inner_njit(forceinline=True)
 _shift = _inline(kernel.doppler_shift_and_gradient)
 
 _STEPS = 200  # of a search for a valley, at most

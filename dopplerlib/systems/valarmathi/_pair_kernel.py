@@ -1,14 +1,13 @@
 """Kalman filters of velocity and acceleration behind one or two sensors, compiled."""
 
 import numpy as np
-from numba import njit
 
-from ..._compile import cached_njit
+from ..._compile import cached_njit, inner_njit
 
 FIXED, OWN, FUSED, STATE = 0, 1, 2, 3
 
 
-@njit(nogil=True, error_model="numpy")
+@inner_njit
 def _place(nodes, value):
     """Return the interval of the nodes that holds a value, and the relative position in it."""
     last = len(nodes) - 1
@@ -20,6 +19,15 @@ def _place(nodes, value):
     while value > nodes[i + 1]:
         i += 1
     return i, (value - nodes[i]) / (nodes[i + 1] - nodes[i])
+
+
+@inner_njit
+def _put(x, P, from_x, from_P):
+    """Copy a state; numba takes seconds to compile what NumPy writes in one line."""
+    for i in range(2):
+        x[i] = from_x[i]
+        for j in range(2):
+            P[i, j] = from_P[i, j]
 
 
 @cached_njit
@@ -97,7 +105,7 @@ def filter_pair(
                 P[r, s, k, 1, 0] = P[r, s, k, 0, 1]
                 P[r, s, k, 1, 1] = n0 * c + n1 * d + k1 * k1 * R[w, s]
             if sensors == 1:
-                fused_x[r, k], fused_P[r, k] = x[r, 0, k], P[r, 0, k]
+                _put(fused_x[r, k], fused_P[r, k], x[r, 0, k], P[r, 0, k])
             else:
                 if k > 0:
                     # Cross covariance of the two errors (Bar-Shalom and Campo), which share the
@@ -125,7 +133,7 @@ def filter_pair(
                         fused_P[r, k, i, j] = B[i, j] - w0 * B[0, j] - w1 * B[1, j]
             if feedback == STATE:
                 for s in range(sensors):
-                    x[r, s, k], P[r, s, k] = fused_x[r, k], fused_P[r, k]
+                    _put(x[r, s, k], P[r, s, k], fused_x[r, k], fused_P[r, k])
             if k == count - 1:
                 continue
             for s in range(sensors):

@@ -1,11 +1,10 @@
 """Peaks of zero-padded transforms of windows that slide by one sample, compiled."""
 
 import numpy as np
-from numba import njit
 
-from ..._compile import cached_njit
+from ..._compile import cached_njit, inner_njit
 
-_inner = njit(nogil=True, fastmath=True, error_model="numpy")
+_inner = inner_njit(fastmath=True)
 
 
 @_inner
