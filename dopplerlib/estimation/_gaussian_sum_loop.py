@@ -21,7 +21,7 @@ ALONE = 2  # members with which samples are taken one by one
 _BETWEEN = 2  # blocks from one merging to the next
 _ITERATIONS = 2  # of an update
 _MARGIN = 12.0  # by which a window may be less likely than the best, in logarithms
-_SETTLING, _FEW = 30, 10  # blocks and members at the first new start, see `gaussian_sum`
+_FEW = 20  # members, at most, that are fitted again to all scans
 
 
 @compiled
@@ -193,10 +193,10 @@ def _cached(compiled_in):
                                                 b)  # fmt: skip
                 count, gained = drop(x, P, weight, count, setting.lightest)
                 evidence += gained
-                if blocks % _BETWEEN == 1:
+                if blocks % _BETWEEN == 0:
                     count = merge(x, P, weight, count, setting.loss)
                 blocks += 1
-                if exact and max(settling, _SETTLING) <= blocks < len(scans) and count <= _FEW:
+                if exact and settling <= blocks < len(scans) and count <= _FEW:
                     modes = settle(scans[:blocks], variances[:blocks], middles[:blocks], middles[s],
                                    positions, r, c, mean, information, least, x, P, weight,
                                    count)  # fmt: skip

@@ -5,6 +5,8 @@ import numpy as np
 from .._cholesky import compiled, factor
 from ._ring_member import LOST, put, put_square
 
+_HEAVY = 100  # members, at most, of which the nearest is looked for
+
 
 @compiled
 def drop(x, P, weight, count, least):
@@ -40,8 +42,8 @@ def drop(x, P, weight, count, least):
 def merge(x, P, weight, count, loss):
     """Unite members that are alike; return the number left.
 
-    From the lightest on, each is united with the one that is nearest, if Runnalls' (2007) bound on
-    the Kullback-Leibler cost of it is below `loss`.
+    From the lightest on, each is united with the nearest of the heavier ones, if Runnalls' (2007)
+    bound on the Kullback-Leibler cost of it is below `loss`.
     """
     L, d, both = np.zeros((6, 6)), np.empty(6), np.zeros((6, 6))
     logs, y, v = np.empty(count), np.empty((count, 6)), np.empty((count, 6))
@@ -57,23 +59,28 @@ def merge(x, P, weight, count, loss):
     for m in range(count):
         logs[m] = factor(P[m], L)
         _whitened(x[m], P[m], whitener, both, y[m], v[m])
-    for _ in range(count):
-        i = 0
-        for m in range(count):
-            if weight[m] < weight[i]:
-                i = m
-        weight[i] = np.inf  # has had its turn
+    # Places by weight, the heaviest first, by insertion: np.argsort takes a second to compile.
+    order = np.empty(count, np.int64)
+    for m in range(count):
+        p = m
+        while p > 0 and weight[order[p - 1]] < weight[m]:
+            order[p] = order[p - 1]
+            p -= 1
+        order[p] = m
+    for p in range(count - 1, 0, -1):
+        i = order[p]
         nearest, least = -1, np.inf
-        for j in range(count):
-            if j != i and alive[j] > 0.0:
-                share = alive[j] / (alive[i] + alive[j])
-                distance = 0.0
-                for a in range(6):
-                    apart = y[j, a] - y[i, a]
-                    distance += apart * apart / (v[i, a] + share * (v[j, a] - v[i, a]))
-                distance *= share
-                if distance < least:
-                    nearest, least = j, distance
+        for q in range(min(p, _HEAVY)):
+            j = order[q]
+            share = alive[j] / (alive[i] + alive[j])
+            limit, distance = least / share, 0.0
+            for a in range(6):
+                apart = y[j, a] - y[i, a]
+                distance += apart * apart / (v[i, a] + share * (v[j, a] - v[i, a]))
+                if distance >= limit:
+                    break
+            if distance < limit:
+                nearest, least = j, distance * share
         if nearest < 0:
             break
         j = nearest

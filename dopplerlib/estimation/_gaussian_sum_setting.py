@@ -10,12 +10,12 @@ from ..model.motion import constant_velocity, dwna_gain, ncv_transition
 
 # Windows of the start: distance in units of 1 / radius (of eta) and in logarithms (of rho), and
 # deviation of each window as a share of that distance, so that their sum is even to a percent.
-_ACROSS, _ALONG, _WIDTH = 0.05, 0.17, 0.71
+_ACROSS, _ALONG, _WIDTH = 0.04, 0.2, 0.71
 _DRAWN = 2**14  # points of the prior that say where windows are needed
-_COVERED = 0.999  # share of them that lie in windows
+_COVERED = 0.99  # share of them that lie in windows
 _LEAST = 0.15  # of the radius: nearer to the sensors' plane, or the first of them, a member is lost
 _FLAT = 1e-9  # of the radius: so far off the plane a sensor is in it
-_SCANS = 512  # that are kept of a target that goes straight
+_SETTLING, _SCANS = 30, 512  # blocks of a target that goes straight at the first new fit, at most
 
 
 class Setting(NamedTuple):
@@ -113,7 +113,7 @@ def new_bank(setting: Setting) -> Bank:
     size, N = len(setting.grid), len(setting.positions)
     scans = 1 if len(setting.noise) else _SCANS
     numbers = np.zeros(7, np.int64)
-    numbers[4] = setting.block
+    numbers[4], numbers[6] = setting.block, _SETTLING
     return Bank(
         np.empty((size, 6)), np.empty((size, 6, 6)), np.empty(size),
         np.empty((setting.block, N)), np.empty((setting.block, N)), numbers, np.zeros(2),

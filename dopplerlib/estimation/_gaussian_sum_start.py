@@ -10,10 +10,23 @@ from .._cholesky import compiled, factor, solve
 from ..kernels import doppler as kernel
 from ._ring_member import LOST, inline, put, state_at
 
-_STEPS, _HALVINGS, _GAIN = 4, 5, 1e-3  # of a descent
+_STEPS, _HALVINGS, _GAIN = 4, 5, 1e-2  # of a descent
 _EQUAL = 0.1  # squared distance of two modes that are one, in deviations
 
 _shift = inline(kernel.doppler_shift_and_gradient)
+
+
+@inline
+def _pulled(G, a0, a1, a2, a3, a4, a5):
+    """Return G' a, for the derivatives G of a state by its coordinates."""
+    return (
+        G[0, 0] * a0 + G[1, 0] * a1 + G[3, 0] * a3,
+        G[0, 1] * a0 + G[2, 1] * a2 + G[3, 1] * a3,
+        G[3, 2] * a3 + G[4, 2] * a4,
+        G[3, 3] * a3 + G[5, 3] * a5,
+        G[3, 4] * a3,
+        G[0, 5] * a0 + G[1, 5] * a1 + G[2, 5] * a2 + G[3, 5] * a3 + G[4, 5] * a4 + G[5, 5] * a5,
+    )
 
 
 @compiled
@@ -51,7 +64,7 @@ def objective(x, scans, variances, middles, now, positions, r, c, mean, informat
             for i in range(6):
                 scaled = w * row[i]
                 slope[i] += scaled * residual
-                for j in range(i + 1):
+                for j in range(6):
                     A[i, j] += scaled * row[j]
     age = now - middles[0]
     for i in range(3):
@@ -67,28 +80,26 @@ def objective(x, scans, variances, middles, now, positions, r, c, mean, informat
             slope[3 + i] -= age * s
     for i in range(3):
         for j in range(3):
-            A[i, j] += information[i, j]
-            A[3 + i, j] += information[3 + i, j] - age * information[i, j]
-            A[3 + i, 3 + j] += information[3 + i, 3 + j] + age * (
-                age * information[i, j] - information[3 + i, j] - information[i, 3 + j]
-            )
+            near, cross = information[i, j], information[3 + i, j]
+            A[i, j] += near
+            A[3 + i, j] += cross - age * near
+            A[j, 3 + i] += cross - age * near
+            A[3 + i, 3 + j] += information[3 + i, 3 + j]
+            A[3 + i, 3 + j] += age * (age * near - cross - information[3 + j, i])
+    g[0], g[1], g[2], g[3], g[4], g[5] = _pulled(
+        G, slope[0], slope[1], slope[2], slope[3], slope[4], slope[5]
+    )
     for i in range(6):
-        g[i] = 2 * G[0, i] / state[0]
-        for k in range(6):
-            g[i] += G[k, i] * slope[k]
+        g[i] += 2 * G[0, i] / state[0]
     g[5] -= 9
     for k in range(6):
-        for j in range(6):
-            s = 0.0
-            for i in range(6):
-                s += A[max(k, i), min(k, i)] * G[i, j]
-            B[k, j] = s
-    for i in range(6):
-        for j in range(i + 1):
-            s = 0.0
-            for k in range(6):
-                s += G[k, i] * B[k, j]
-            H[i, j] = H[j, i] = s
+        B[0, k], B[1, k], B[2, k], B[3, k], B[4, k], B[5, k] = _pulled(
+            G, A[k, 0], A[k, 1], A[k, 2], A[k, 3], A[k, 4], A[k, 5]
+        )
+    for j in range(6):
+        H[0, j], H[1, j], H[2, j], H[3, j], H[4, j], H[5, j] = _pulled(
+            G, B[j, 0], B[j, 1], B[j, 2], B[j, 3], B[j, 4], B[j, 5]
+        )
     for w, i in enumerate((0, 1, 5)):
         d = x[i] - window[w, 0]
         cost += 0.5 * window[w, 1] * d * d
@@ -106,18 +117,18 @@ def _downhill(L, g, step):
 
 
 @compiled
-def _descend(x, scans, variances, middles, now, positions, r, c, mean, information, window, least,
-             P, state, G, g, H, A, B, L, step, new):  # fmt: skip
-    """Move `x` to the mode nearby, write its covariance to `P`, and return Laplace's log weight."""
-    cost, moving = np.inf, False
-    put(new, x)
-    # The first evaluation is that at x itself, and no descent.
+def _descend(x, cost, step, scans, variances, middles, now, positions, r, c, mean, information,
+             window, least, P, state, G, g, H, A, B, L, new):  # fmt: skip
+    """Move `x` to the mode nearby, write its covariance to `P`, and return Laplace's log weight.
+
+    `cost` is that of `x`, and `step` the first one to try; with an infinite cost it has to be zero.
+    """
+    determinant = np.nan
     for tried in range(_STEPS + 1):
-        share, before = 1.0, cost
+        share = 1.0
         for _ in range(_HALVINGS):
-            if moving:
-                for i in range(6):
-                    new[i] = x[i] + share * step[i]
+            for i in range(6):
+                new[i] = x[i] + share * step[i]
             cost_new = objective(new, scans, variances, middles, now, positions, r, c, mean,
                                  information, window, least, state, G, g, H, A, B)  # fmt: skip
             if cost_new < cost:
@@ -126,14 +137,12 @@ def _descend(x, scans, variances, middles, now, positions, r, c, mean, informati
         if not cost_new < cost:
             break
         put(x, new)
-        cost, moving = cost_new, True
+        gain, cost = cost - cost_new, cost_new
         determinant = factor(H, L)
-        if np.isnan(determinant):
-            return LOST
-        if before - cost < _GAIN or tried == _STEPS:
+        if np.isnan(determinant) or gain < _GAIN or tried == _STEPS:
             break
         _downhill(L, g, step)
-    if not np.isfinite(cost):
+    if np.isnan(determinant):
         return LOST
     for j in range(6):
         for i in range(6):
@@ -164,7 +173,7 @@ def start(scans, variances, middles, positions, r, c, mean, information, grid, w
         x[w, 0], x[w, 1], x[w, 5] = grid[w]
         x[w, 2] = x[w, 3] = x[w, 4] = 0.0
         put(window[:, 0], grid[w])
-        # First beta and b, in which the shifts are linear; then a step in all of them, not taken.
+        # First beta and b, in which the shifts are linear; then a step in all, not yet taken.
         for linear in (True, False):
             cost = objective(x[w], scans, variances, middles, now, positions, r, c, mean,
                              information, window, least, state, G, g, H, A, B)  # fmt: skip
@@ -181,7 +190,8 @@ def start(scans, variances, middles, positions, r, c, mean, information, grid, w
                 for i in range(2, 5):
                     x[w, i] += step[i]
             else:
-                promised[w] = cost
+                promised[w] = weight[w] = cost
+                put(P[w, 0], step)
                 for i in range(6):
                     promised[w] += 0.5 * g[i] * step[i]
                 best = min(best, promised[w])
@@ -190,9 +200,10 @@ def start(scans, variances, middles, positions, r, c, mean, information, grid, w
         if not promised[w] < best + margin:
             continue
         put(window[:, 0], grid[w])
+        put(step, P[w, 0])
         weight[count] = _descend(
-            x[w], scans, variances, middles, now, positions, r, c, mean, information, window,
-            least, P[count], state, G, g, H, A, B, L, step, new,
+            x[w], weight[w], step, scans, variances, middles, now, positions, r, c, mean,
+            information, window, least, P[count], state, G, g, H, A, B, L, new,
         )  # fmt: skip
         if weight[count] > LOST:
             put(x[count], x[w])
@@ -213,9 +224,11 @@ def settle(scans, variances, middles, now, positions, r, c, mean, information, l
     step, new, window = np.empty(6), np.empty(6), np.zeros((3, 2))
     kept = 0
     for m in range(count):
+        for i in range(6):
+            step[i] = 0.0
         weight[kept] = _descend(
-            x[m], scans, variances, middles, now, positions, r, c, mean, information, window,
-            least, P[kept], state, G, g, H, A, B, L, step, new,
+            x[m], np.inf, step, scans, variances, middles, now, positions, r, c, mean,
+            information, window, least, P[kept], state, G, g, H, A, B, L, new,
         )  # fmt: skip
         alone = weight[kept] > LOST
         for j in range(kept):
