@@ -14,7 +14,7 @@ from .extended_update import linearized
 from .nonlinear_kalman import Function, _arguments
 from .track import Track
 
-ROUNDS = 10  # of the weights; the more a prior knows, the faster they settle
+ROUNDS, SETTLED = 30, 1e-4  # of the weights, and the change with which a run has done
 
 
 @_checks.quiet
@@ -88,9 +88,11 @@ def robust_ekf(
     R / w. Huber (1981) weighs a residual r, in standard deviations, by min(1, threshold / r); in
     Kalman filters Karlgaard and Schaub (2007). Student's t gives (degrees + 1) / (degrees + E r^2),
     where E r^2 is the square of the residual and the variance of what is predicted there after the
-    update (Piché, Särkkä, Hartikainen 2012). Both are iterated ten times from a weight of one. The
-    residual of an update that is right has the variance R - H P H' with the updated P, so the mean
-    of r^2 + H P H' is R (Mehra 1972; Mohamed and Schwarz 1999): "adaptive" averages it with
+    update (Piché, Särkkä, Hartikainen 2012, there for all components as one). Both are iterated
+    from a weight of one.
+
+    The residual of an update that is right has the variance R - H P H' with the updated P, so the
+    mean of r^2 + H P H' is R (Mehra 1972; Mohamed and Schwarz 1999): "adaptive" averages it with
     exponential weights. It is never negative.
 
     Examples
@@ -175,18 +177,23 @@ def _iterated(innovation, S, R, rule):
 
     With P H' = M, the update moves the prediction by M S^-1 v, so the residual is R / w S^-1 v.
     """
-    there = ~np.isnan(innovation)
-    both = there[..., :, None] & there[..., None, :]
-    v = np.where(there, innovation, 0.0)[..., None]
-    HPH = np.where(both, S - _diagonal(R), 0.0)
     covariances.cholesky(S)  # blames R if it is singular
-    both_sides, w = np.concatenate([v, HPH], axis=-1), np.ones(innovation.shape)
+    m = innovation.shape[-1]
+    v, S, R = innovation.reshape(-1, m), S.reshape(-1, m, m), R.reshape(-1, m)
+    there = ~np.isnan(v)
+    both = there[..., :, None] & there[..., None, :]
+    HPH = np.where(both, S - _diagonal(R), 0.0)
+    known = np.concatenate([np.where(there, v, 0.0)[..., None], HPH], axis=-1)
+    w, left = np.ones(v.shape), np.arange(len(v))
     for _ in range(ROUNDS):
-        solved = np.linalg.solve(HPH + _diagonal(R / w), both_sides)
-        r = np.sqrt(R) / w * solved[..., 0]
-        after = HPH - HPH @ solved[..., 1:]
-        w = rule(r, np.diagonal(after, axis1=-2, axis2=-1) / R)
-    return w
+        before, r, H = w[left], R[left], HPH[left]
+        solved = np.linalg.solve(H + _diagonal(r / before), known[left])
+        spread = np.diagonal(H - H @ solved[..., 1:], axis1=-2, axis2=-1)
+        w[left] = rule(np.sqrt(r) / before * solved[..., 0], spread / r)
+        left = left[np.abs(w[left] - before).max(axis=-1) > SETTLED]
+        if not len(left):
+            break
+    return w.reshape(innovation.shape)
 
 
 def _squares(innovation, S):

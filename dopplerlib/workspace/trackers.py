@@ -67,6 +67,10 @@ def _known(name, value):
     return _checks.one_of(name, value, tuple(TRACKERS))
 
 
+_States = Annotated[FloatArray, exactly(None, 6, check=_checks.bounded)]
+_Covariances = Annotated[FloatArray, exactly(None, 6, 6, check=_checks.bounded)]
+
+
 @checked
 def track_targets(
     z: Annotated[FloatArray, exactly(None, None, None, check=_checks.bounded)],
@@ -77,6 +81,7 @@ def track_targets(
     sigma_f: Positive = SIGMA_F,
     prior: tuple[State, Covariance] = (PRIOR_MEAN, PRIOR_COVARIANCE),
     array: RadarArray = ARRAY,
+    start: tuple[_States, _Covariances] | None = None,
     rng: np.random.Generator | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Track targets by one of the trackers that are compared.
@@ -114,6 +119,9 @@ def track_targets(
         Mean and covariance of the state at time zero that the tracker assumes.
     array : RadarArray
         The N sensors.
+    start : pair of array_like, shapes (runs, 6) and (runs, 6, 6), optional
+        Estimates after the first ten samples and their covariances, which a tracker begins with
+        instead of its own start. One that has no start does without.
     rng : numpy.random.Generator, optional
         Source of randomness of the particle filter, a child for each run.
 
@@ -144,19 +152,22 @@ def track_targets(
     if rng is None and tracker == "particles":
         raise ValueError("rng must be a numpy.random.Generator for tracker 'particles', got None")
     P0 = _checks.covariance("prior", prior[1], 6)
+    if start is not None:
+        for each in start:
+            _checks.exact_shape("start", each, (len(z), *each.shape[1:]))
     if one.start is not None:
         sigma_a = max(sigma_a, _STILL)
     s = f.Setting(array, sigma_a, sigma_f, prior[0], P0, every, rng)
-    x, P = one.filter(z, s) if one.start is None else _started(one, z, s)
+    x, P = one.filter(z, s) if one.start is None else _started(one, z, s, start)
     ended = np.isnan(z).all(axis=-1)  # at this sample and all that follow
     ended = np.logical_and.accumulate(ended[:, ::-1], axis=1)[:, ::-1]
     ended = ended[:, every - 1 :: every]
     return np.where(ended[..., None], np.nan, x), np.where(ended[..., None, None], np.nan, P)
 
 
-def _started(tracker, z, s):
+def _started(tracker, z, s, start):
     """Return the estimates of a tracker that has a start, NaN before that."""
-    first, x, P = tracker.start(z, s)
+    first, x, P = tracker.start(z, s) if start is None else (f.FIRST, *start)
     if z.shape[1] <= first:
         raise ValueError(f"z must have more than {first} samples for this tracker, got {z.shape}")
     begun = np.isfinite(x).all(axis=-1)  # the others have lost the target before

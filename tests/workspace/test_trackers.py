@@ -103,3 +103,16 @@ def test_a_batch_near_the_ring_has_the_errors_that_it_claims():
 def test_what_cannot_be_tracked_is_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         track_targets(**({"z": np.zeros((1, 20, 6))} | arguments))
+
+
+def test_a_start_may_be_given_and_one_that_is_lost_costs_the_others_nothing(records):
+    _, z = records
+    x, P = track_targets(z, "gated_bank", every=FIRST)
+    start = x[:, 0], P[:, 0]
+    own, given = track_targets(z, "huber"), track_targets(z, "huber", start=start)
+    np.testing.assert_array_equal(given[0], own[0])
+    np.testing.assert_array_equal(given[1], own[1])
+    lost = np.where([[True], [False]], np.nan, start[0]), start[1]
+    found, _ = track_targets(z, "huber", start=lost)
+    assert np.isnan(found[0]).all()
+    np.testing.assert_allclose(found[1], own[0][1], rtol=1e-6, atol=1e-9)
