@@ -59,7 +59,7 @@ def valleys(
             ax.plot(*place, marker, color=TRUTH, ms=6, mec="white")
             ax.annotate(name, place, (0, 11), bbox=HALO, **LABEL)
         ax.set(title=label, xlabel=r"$\eta_y$ (1/m)", aspect="equal")
-        ax.locator_params(nbins=5)
+        ax.locator_params(nbins=3)
     axes[0].set_ylabel(r"$\eta_z$ (1/m)")
 
 
