@@ -23,7 +23,7 @@ _HOME = by_name(
         "outcome_summary saved_detections saved_outcomes study_outcome study_record study_variants",
         "polar_filters": "measure_polar polar_noise start_polar track_polar track_polar_naive",
         "motion_models": "rms_of_runs smooth_vehicle track_accelerating track_two_models",
-        "model_comparison": "AGILE JERKS STAYS STEPS model_errors",
+        "model_comparison": "AGILE JERKS STAYS STEPS model_errors saved_model_errors",
         "crossing": "Crossing RULES crossing_paths track_crossing",
     }
 )

@@ -40,6 +40,7 @@ from .model_comparison import JERKS as JERKS
 from .model_comparison import STAYS as STAYS
 from .model_comparison import STEPS as STEPS
 from .model_comparison import model_errors as model_errors
+from .model_comparison import saved_model_errors as saved_model_errors
 from .motion_models import rms_of_runs as rms_of_runs
 from .motion_models import smooth_vehicle as smooth_vehicle
 from .motion_models import track_accelerating as track_accelerating
@@ -135,6 +136,7 @@ __all__ = [
     "reported",
     "rms_of_runs",
     "saved_detections",
+    "saved_model_errors",
     "saved_outcomes",
     "score_paths",
     "settled_noise_std",

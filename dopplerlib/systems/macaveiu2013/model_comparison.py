@@ -1,9 +1,13 @@
-"""Filters and smoothers on the same records, each over the range of its free constant."""
+"""Filters and smoothers on the same records, each over the range of its free constant.
+
+``make study NAME=model_errors`` compares them; what it found is in ``results`` and read here.
+"""
 
 from functools import partial
 
 import numpy as np
 
+from ..._data import read_json, results
 from ..._hints import Runs, checked
 from ..._typing import FloatArray
 from .linear_filter import filter_vehicle, measure_vehicle
@@ -57,6 +61,21 @@ def model_errors(runs: Runs, *, rng: np.random.Generator) -> dict[str, dict[str,
                 error = rms_of_runs(estimates, path.truth, where, "velocity")
                 found[case][competitor] = error
     return found
+
+
+def saved_model_errors() -> dict[str, dict[str, FloatArray]]:
+    """Return `model_errors` of 60 runs, to five decimals, as the study saved them.
+
+    Examples
+    --------
+    >>> saved_model_errors()["Fig 10"]["measurement"].shape
+    (60,)
+    """
+    stored = read_json("model_errors.json", folder=results)
+    return {
+        case: {name: np.array(errors) for name, errors in row.items()}
+        for case, row in stored.items()
+    }
 
 
 def _competitors(s):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dopplerlib.systems import macaveiu2013 as paper
+from studies import model_errors as study
 
 S = paper.automotive_settings()
 PATHS = paper.vehicle_paths()
@@ -13,9 +14,21 @@ STRAIGHT = {"filter 0.003", "filter 0.01"}
 
 @pytest.fixture(scope="module")
 def errors():
-    """Return means of 16 records, and the largest deviation of a mean: 0.01 m/s."""
-    found = paper.model_errors(16, rng=np.random.default_rng(51))
+    """Return means of the 60 records of the study; the largest deviation of a mean: 0.005 m/s."""
+    found = paper.saved_model_errors()
     return {case: {name: one.mean() for name, one in row.items()} for case, row in found.items()}
+
+
+def test_the_saved_errors_come_out_again():
+    """The noise of a record is the same among two as among sixty; saved are five decimals."""
+    saved, seed = paper.saved_model_errors(), study.PARAMETERS["seed"]
+    found = paper.model_errors(2, rng=np.random.default_rng(seed))
+    assert found.keys() == saved.keys()
+    for case, row in found.items():
+        assert row.keys() == saved[case].keys()
+        for name, error in row.items():
+            assert len(saved[case][name]) == study.PARAMETERS["runs"]
+            assert error == pytest.approx(saved[case][name][:2], rel=0, abs=6e-6), (case, name)
 
 
 def of(row, kind):
