@@ -14,7 +14,7 @@ from ..kernels import doppler, ring_coordinates
 from . import _gaussian_sum_gate, _gaussian_sum_merge, _gaussian_sum_start, _ring_member
 from ._gaussian_sum_gate import refuse
 from ._gaussian_sum_merge import drop, merge
-from ._gaussian_sum_start import settle, start
+from ._gaussian_sum_start import settle, shift_in_space, start
 from ._ring_member import LOST, predict, put, put_square, state_at, update
 
 ALONE = 2  # members with which samples are taken one by one
@@ -102,8 +102,32 @@ def moments(x, P, weight, count, T, noise, r, mean, covariance, shares, means, c
 
 
 @compiled
-def _scan(z, weights, length, scan, variance):
-    """Write the weighted mean of each sensor over `length` samples, and its variance."""
+def _slopes(x, weight, count, positions, r, c, T, state, G, slope):
+    """Write the change of each shift from sample to sample to `slope`, for the heaviest member."""
+    heaviest = 0
+    for m in range(count):
+        if weight[m] > weight[heaviest]:
+            heaviest = m
+    if count > 0:
+        state_at(x[heaviest], r, state, G)
+    for n in range(len(slope)):
+        slope[n] = 0.0
+        if count > 0:
+            _, h_x, h_y, h_z, _, _, _ = shift_in_space(
+                state[0], state[1], state[2], state[3], state[4], state[5],
+                positions[n, 0], positions[n, 1], positions[n, 2], c,
+            )  # fmt: skip
+            slope[n] = T * (h_x * state[3] + h_y * state[4] + h_z * state[5])
+
+
+@compiled
+def _scan(z, weights, length, slope, scan, variance):
+    """Write the weighted mean of each sensor over `length` samples, and its variance.
+
+    Return the log densities of the means at themselves, and of the samples given the means and
+    their `slope`.
+    """
+    at_mean = inside = 0.0
     for n in range(z.shape[1]):
         total = seen = 0.0
         for k in range(length):
@@ -112,6 +136,16 @@ def _scan(z, weights, length, scan, variance):
                 seen += weights[k, n]
         scan[n] = total / seen if seen > 0.0 else np.nan
         variance[n] = 1 / seen if seen > 0.0 else np.inf
+        if seen > 0.0:
+            at_mean += 0.5 * np.log(seen / (2 * np.pi))
+            inside -= 0.5 * np.log(seen / (2 * np.pi))
+            for k in range(length):
+                if not np.isnan(z[k, n]):
+                    apart = z[k, n] - scan[n] - (k - 0.5 * (length - 1)) * slope[n]
+                    inside += 0.5 * (
+                        np.log(weights[k, n] / (2 * np.pi)) - weights[k, n] * apart * apart
+                    )
+    return at_mean, inside
 
 
 @compiled
@@ -149,9 +183,9 @@ def _cached(compiled_in):
         scans, variances, middles = bank.scans, bank.variances, bank.middles
         state, G, F, spare = np.empty(6), np.zeros((6, 6)), np.empty((6, 6)), np.empty((6, 6))
         at, before, P_before = np.empty(6), np.empty(6), np.empty((6, 6))
-        g, b, L = np.empty(6), np.empty(6), np.zeros((6, 6))
+        g, b, L, slope = np.empty(6), np.empty(6), np.zeros((6, 6)), np.empty(z.shape[1])
         count, taken, blocks, filled, length, last, settling = bank.numbers
-        evidence, constant = bank.logs
+        evidence, constant, rest, known = bank.logs
         exact = len(noise) == 0
         for k in range(len(z)):
             if count == 0 and blocks > 0:
@@ -175,10 +209,10 @@ def _cached(compiled_in):
                                   flat, setting.limit, state, G, g)  # fmt: skip
                     constant += lost
                     evidence += lost
-                _scan(held, held_weights, length, scan, variance)
-                for n in range(len(scan)):
-                    if not np.isnan(scan[n]):
-                        constant -= 0.5 * np.log(2 * np.pi * variance[n])
+                _slopes(x, weight, count, positions, r, c, T, state, G, slope)
+                at_mean, inside = _scan(held, held_weights, length, slope, scan, variance)
+                constant += at_mean
+                rest += inside
                 middles[s] = (taken - 0.5 * (length + 1)) * T
                 if blocks == 0:
                     count = start(scans[s:s + 1], variances[s:s + 1], middles[s:s + 1], positions,
@@ -209,6 +243,8 @@ def _cached(compiled_in):
                     length = 1
                 else:
                     length = setting.block
+            if taken % setting.block == 0:
+                known = evidence + rest  # of the same samples, whatever the length of blocks now
             if (k + 1) % every == 0 and count > 0:
                 # A velocity less the mean of those of its block has this variance, in steps.
                 o, apart = k // every, _squares(last - 1) / last**2 + filled
@@ -216,10 +252,11 @@ def _cached(compiled_in):
                 push = _columns(noise, apart, T)
                 moments(x, P, weight, count, ahead, push, r, out.x[o], out.P[o], out.weights[o],
                         out.means[o], out.covariances[o], state, G, L)  # fmt: skip
-                out.members[o], out.evidence[o] = count, evidence
+                out.members[o], out.evidence[o] = count, known
         for i, value in enumerate((count, taken, blocks, filled, length, last, settling)):
             bank.numbers[i] = value
-        bank.logs[0], bank.logs[1] = evidence, constant
+        for i, value in enumerate((evidence, constant, rest, known)):
+            bank.logs[i] = value
 
     return track
 

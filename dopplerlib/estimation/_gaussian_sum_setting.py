@@ -12,6 +12,7 @@ from ..model.motion import constant_velocity, dwna_gain, ncv_transition
 # deviation of each window as a share of that distance, so that their sum is even to a percent.
 _ACROSS, _ALONG, _WIDTH = 0.04, 0.2, 0.71
 _DRAWN = 2**14  # points of the prior that say where windows are needed
+_COUNTED = 2**9  # of them, at which the sum of the windows is taken
 _COVERED = 0.99  # share of them that lie in windows
 _LEAST = 0.15  # of the radius: nearer to the sensors' plane, or the first of them, a member is lost
 _FLAT = 1e-9  # of the radius: so far off the plane a sensor is in it
@@ -94,17 +95,14 @@ def prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss, gate_probab
     mean, P = turn @ (F @ (x0 - frame.origin)), turn @ P @ turn.T
     _checks.estimates("x0, P0, T, sigma_a", mean, P)
     P = _checks.covariance("P0", (P + P.T) / 2, 6)
-    grid, widths = _windows(mean, P, radius, least)
+    grid, widths, overlap = _windows(mean, P, radius, least)
     information = np.linalg.inv(P)
-    # The integral over one window, times the number of windows in a unit of the lattice.
-    cell = np.prod(widths / _WIDTH) * np.sqrt(3) / 2
-    overlap = np.sum(np.log(np.sqrt(2 * np.pi) * widths)) - np.log(cell)
     prior = -0.5 * float(np.linalg.slogdet(P)[1])
     limit = np.inf if gate_probability is None else float(chdtri(1, 1 - gate_probability))
     return frame, Setting(
         np.ascontiguousarray(positions), radius, float(array.doppler_per_speed), float(T), block,
         columns, flat, mean, (information + information.T) / 2,
-        prior, prior - float(overlap), grid, widths, least, float(lightest), float(loss), limit,
+        prior, prior - overlap, grid, widths, least, float(lightest), float(loss), limit,
     )  # fmt: skip
 
 
@@ -116,7 +114,7 @@ def new_bank(setting: Setting) -> Bank:
     numbers[4], numbers[6] = setting.block, _SETTLING
     return Bank(
         np.empty((size, 6)), np.empty((size, 6, 6)), np.empty(size),
-        np.empty((setting.block, N)), np.empty((setting.block, N)), numbers, np.zeros(2),
+        np.empty((setting.block, N)), np.empty((setting.block, N)), numbers, np.zeros(4),
         np.empty((scans, N)), np.empty((scans, N)), np.empty(scans),
     )  # fmt: skip
 
@@ -166,7 +164,10 @@ def _frame(array, x0):
 
 
 def _windows(mean, P, radius, least):
-    """Return centers (W, 3) of eta and ln rho where the prior is, and widths of the windows."""
+    """Return centers (W, 3) of eta and ln rho where the prior is, and widths of the windows.
+
+    The third is the logarithm of the windows' sum in the mean over the prior.
+    """
     draws = np.random.default_rng(0).standard_normal((_DRAWN, 6))
     states = mean + draws @ np.linalg.cholesky(P).T
     states = states[states[:, 0] > least]
@@ -186,4 +187,8 @@ def _windows(mean, P, radius, least):
     grid = np.stack(
         [(i + 0.5 * (j % 2)) * across, j * across * np.sqrt(3) / 2, k * _ALONG], axis=-1
     )
-    return grid, _WIDTH * np.array([across, across, _ALONG])
+    widths = _WIDTH * np.array([across, across, _ALONG])
+    seen = np.stack([eta_y, eta_z, np.log(rho)], axis=-1)[:_COUNTED]
+    apart = (seen[:, None] - grid) / widths
+    total = np.exp(-0.5 * np.sum(apart * apart, axis=-1)).sum(axis=-1)
+    return grid, widths, float(np.log(total.mean()))

@@ -13,7 +13,7 @@ from ._ring_member import LOST, inline, put, state_at
 _STEPS, _HALVINGS, _GAIN = 4, 5, 1e-2  # of a descent
 _EQUAL = 0.1  # squared distance of two modes that are one, in deviations
 
-_shift = inline(kernel.doppler_shift_and_gradient)
+shift_in_space = inline(kernel.doppler_shift_and_gradient)
 
 
 @inline
@@ -52,7 +52,7 @@ def objective(x, scans, variances, middles, now, positions, r, c, mean, informat
         for n in range(scans.shape[1]):
             if np.isnan(scans[s, n]):
                 continue
-            shift, row[0], row[1], row[2], row[3], row[4], row[5] = _shift(
+            shift, row[0], row[1], row[2], row[3], row[4], row[5] = shift_in_space(
                 state[0] - age * state[3], state[1] - age * state[4], state[2] - age * state[5],
                 state[3], state[4], state[5],
                 positions[n, 0], positions[n, 1], positions[n, 2], c,

@@ -12,6 +12,7 @@ from .._hints import Count, Positive, Probability, checked, up_to
 from .._records import record
 from .._typing import ArrayLike
 from ..model.radar_array import RadarArray
+from ._gaussian_sum_average import average
 from ._gaussian_sum_setting import Estimates, blank, new_bank, prepare, to_caller
 from .extended_kalman import _measurements, _variance
 
@@ -38,9 +39,10 @@ class GaussianSumTrack:
     covariances : ndarray, shape (..., O, M, 6, 6)
         Covariance of the state under each of them, NaN where there are fewer.
     evidence : ndarray, shape (..., O)
-        Logarithm of the density of the measurements so far under the filter's assumptions, in
-        1/Hz to the power of their number. Differences between filters of the same records say
-        which assumptions are the likelier ones, see `average_tracks`.
+        Logarithm of the density of the measurements up to the last multiple of `block` samples,
+        in 1/Hz to the power of their number; -inf where there is no Gaussian.
+    probabilities : ndarray, shape (..., O, S)
+        Probability of each `sigma_a` given these measurements.
     """
 
     x: np.ndarray
@@ -50,6 +52,7 @@ class GaussianSumTrack:
     means: np.ndarray
     covariances: np.ndarray
     evidence: np.ndarray
+    probabilities: np.ndarray
 
 
 @checked
@@ -60,7 +63,7 @@ def gaussian_sum(
     x0: ArrayLike,
     P0: ArrayLike,
     T: Positive,
-    sigma_a: float,
+    sigma_a: ArrayLike,
     sigma_f: ArrayLike,
     noise: Literal["shared", "per_axis"] = "per_axis",
     *,
@@ -90,9 +93,10 @@ def gaussian_sum(
         Covariance of the prior, positive definite.
     T : float
         Sampling interval in s.
-    sigma_a : float
+    sigma_a : array_like, scalar or shape (S,)
         Standard deviation of the acceleration in m/s^2, see `constant_velocity`; 0 for a target
-        that goes straight.
+        that goes straight. Of several ones, any may be right: each has a filter of its own, and
+        the estimate is their average by their evidence (Magill 1965).
     sigma_f : array_like, broadcast to (K, N)
         Standard deviation of the measurements in Hz.
     noise : {"shared", "per_axis"}
@@ -160,26 +164,26 @@ def gaussian_sum(
     z = _measurements(z, array)
     weights = 1 / _variance(sigma_f, z.shape[-2:])
     batch, (K, N) = z.shape[:-2], z.shape[-2:]
-    frame, setting = prepare(
-        array, x0, P0, T, sigma_a, noise, block, lightest, loss, gate_probability
-    )
+    rest = noise, block, lightest, loss, gate_probability
+    prepared = [prepare(array, x0, P0, T, s, *rest) for s in _guesses(sigma_a)]
     z = np.ascontiguousarray(z).reshape(-1, K, N)
     for value in (z, weights):
         value.flags.writeable = False
-    found = blank(len(z), K // every, mixture=mixture)
+    found = [blank(len(z), K // every, mixture=mixture) for _ in prepared]
 
     # Here, and not above, so that importing the library does not load numba.
     from ._gaussian_sum_loop import track
 
     def one(run):
-        out = Estimates(*(value[run] for value in found))
-        track(setting, new_bank(setting), z[run], weights, every, out)
+        for (_, setting), arrays in zip(prepared, found, strict=True):
+            out = Estimates(*(value[run] for value in arrays))
+            track(setting, new_bank(setting), z[run], weights, every, out)
 
     with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
         list(pool.map(one, range(len(z))))
-    return GaussianSumTrack(
-        *(value.reshape(*batch, *value.shape[1:]) for value in to_caller(found, frame))
-    )
+    mean, probabilities = average(found)
+    results = *to_caller(mean, prepared[0][0]), probabilities
+    return GaussianSumTrack(*(value.reshape(*batch, *value.shape[1:]) for value in results))
 
 
 @checked
@@ -189,7 +193,7 @@ def gaussian_sum_online(
     x0: ArrayLike,
     P0: ArrayLike,
     T: Positive,
-    sigma_a: float,
+    sigma_a: ArrayLike,
     sigma_f: ArrayLike,
     noise: Literal["shared", "per_axis"] = "per_axis",
     *,
@@ -211,8 +215,8 @@ def gaussian_sum_online(
         Covariance of the prior.
     T : float
         Sampling interval in s.
-    sigma_a : float
-        Standard deviation of the acceleration in m/s^2.
+    sigma_a : array_like, scalar or shape (S,)
+        Standard deviation of the acceleration in m/s^2, or several ones, see `gaussian_sum`.
     sigma_f : array_like, broadcast to (N,)
         Standard deviation of the measurements in Hz.
     noise : {"shared", "per_axis"}
@@ -248,10 +252,9 @@ def gaussian_sum_online(
     """
     weights = 1 / _variance(sigma_f, (1, len(array)))
     weights.flags.writeable = False
-    frame, setting = prepare(
-        array, x0, P0, T, sigma_a, noise, block, lightest, loss, gate_probability
-    )
-    bank = new_bank(setting)
+    rest = noise, block, lightest, loss, gate_probability
+    prepared = [prepare(array, x0, P0, T, s, *rest) for s in _guesses(sigma_a)]
+    banks = [new_bank(setting) for _, setting in prepared]
 
     @_checks.quiet
     def update(z: ArrayLike) -> GaussianSumTrack:
@@ -260,8 +263,21 @@ def gaussian_sum_online(
 
         sample = _measurements(np.asarray(z)[None], array)
         sample.flags.writeable = False
-        found = blank(1, mixture=mixture)
-        track(setting, bank, sample, weights, 1, found)
-        return GaussianSumTrack(*(value[0] for value in to_caller(found, frame)))
+        found = [blank(1, mixture=mixture) for _ in banks]
+        for (_, setting), bank, out in zip(prepared, banks, found, strict=True):
+            track(setting, bank, sample, weights, 1, out)
+        mean, probabilities = average(found)
+        results = *to_caller(mean, prepared[0][0]), probabilities
+        return GaussianSumTrack(*(value[0] for value in results))
 
     return update
+
+
+def _guesses(sigma_a):
+    """Return one or several values of `sigma_a` as a tuple."""
+    sigma_a = _checks.moderate("sigma_a", sigma_a)
+    if sigma_a.ndim > 1 or not sigma_a.size:
+        raise ValueError(
+            f"sigma_a must be one number or one row of numbers, got shape {sigma_a.shape}"
+        )
+    return tuple(float(s) for s in np.atleast_1d(sigma_a))
