@@ -56,10 +56,9 @@ def nees(track: Track | ImmTrack, truth: ArrayLike) -> FloatArray:
         error = truth - x
     _checks.estimates("track, truth", error, what="errors")
     try:
-        np.linalg.cholesky(P)
+        return np.sum(whiten(error, P, "track, truth") ** 2, axis=-1)
     except np.linalg.LinAlgError:
         return _form_of_singular(error, P, np.maximum(np.abs(truth), np.abs(x)))
-    return np.sum(whiten(error, P, "track, truth") ** 2, axis=-1)
 
 
 def nis(innovation: ArrayLike, S: ArrayLike) -> FloatArray:

@@ -28,7 +28,7 @@ LEFTOVERS = (
     "tests/.ruff_cache/CACHEDIR.TAG",
 )
 SDIST = "import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])"
-# Nothing compiled can be kept: it is compiled sooner.
+# Nothing compiled can be kept: it is compiled sooner still.
 NOWHERE = {"HOME": "/dev/null", "PYTHONDONTWRITEBYTECODE": "1", "NUMBA_OPT": "0"}
 
 
@@ -127,6 +127,7 @@ def used(root, *options, flags=(), **environment):
     empty.mkdir(exist_ok=True)
     told = ("NUMBA", "XDG", "PYTHON")
     inherited = {key: value for key, value in os.environ.items() if not key.startswith(told)}
+    inherited["NUMBA_OPT"] = "1"  # compiles sooner; what the bits are is no question here
     command = [sys.executable, *flags, "-I", "-S", str(ROOT / "tests" / "wheel" / "calls.py")]
     libraries = sysconfig.get_path("purelib")
     told = run([*command, str(root), libraries, *options], cwd=empty, env=inherited | environment)
