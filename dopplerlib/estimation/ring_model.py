@@ -84,7 +84,7 @@ class RingModel:
 
     @property
     def radius(self) -> float:
-        """Radius in m of the ring: the root of the sensors' mean squared distance."""
+        """Root mean squared distance of the sensors from the center in m, that of a ring."""
         return float(np.sqrt(np.mean(np.sum(self.array.positions**2, axis=-1))))
 
     @_checks.quiet

@@ -98,7 +98,7 @@ def track_targets(
         covariance; "own_covariance": from that of the estimate. "ekf": from the prior;
         "ekf_bayes": from mean and covariance of the posterior of ten samples, by the Gaussian sum.
         "iekf", "iekf_bayes": iterated thrice. "ukf": cubature points. "iplf": posterior
-        linearization, thrice. With "ring_" in front: the same in ring coordinates. "batch": at each
+        linearization, thrice. With ``ring_`` in front: the same in ring coordinates. "batch": at each
         output the likeliest straight path of all samples, without a prior. "particles": regularized
         particle filter, 3000 particles. "bank": `gaussian_sum`; "gated_bank": with a gate of
         99.9 %; "moving_bank": three of these for accelerations of 0.4, 4 and 40 m/s^2, weighed by
