@@ -96,18 +96,17 @@ def track_targets(
 
         "paper": extended Kalman filter from the likeliest state of ten samples and the paper's
         covariance; "own_covariance": from that of the estimate. "ekf": from the prior;
-        "ekf_bayes": from mean and covariance of the posterior of ten samples, by the Gaussian sum.
-        "iekf", "iekf_bayes": iterated thrice. "ukf": cubature points. "iplf": posterior
-        linearization, thrice. With ``ring_`` in front: the same in ring coordinates. "batch": at each
-        output the likeliest straight path of all samples, without a prior. "particles": regularized
-        particle filter, 3000 particles. "bank": `gaussian_sum`; "gated_bank": with a gate of
-        99.9 %; "moving_bank": three of these for accelerations of 0.4, 4 and 40 m/s^2, weighed by
-        their evidence, whatever `sigma_a` is.
-
-        "gated_start": "ekf_bayes" with that gate at the start, "gated_start_ukf" the same with
-        cubature points; from the same start the gates of `ekf`, "gate_paper" (two-sided, 95 %),
-        "gate_upper" and "gate_soft" (99.9 %), and the methods of `robust_ekf`, "gate_each"
-        (99.9 %), "huber", "student_t" and "adaptive".
+        "ekf_bayes": from mean and covariance of the posterior of ten samples, by the Gaussian
+        sum. "iekf", "iekf_bayes": iterated thrice. "ukf": cubature points. "iplf": posterior
+        linearization, thrice. With ``ring_`` before it: the same in ring coordinates. "batch": at
+        each output the likeliest straight path of all samples, without a prior. "particles":
+        regularized particle filter, 3000 particles. "bank": `gaussian_sum`; "gated_bank": with a
+        gate of 99.9 %; "moving_bank": three of these for accelerations of 0.4, 4 and 40 m/s^2,
+        weighed by their evidence, whatever `sigma_a` is. "gated_start": "ekf_bayes" with that
+        gate at the start, "gated_start_ukf" the same with cubature points; from the same start
+        the gates of `ekf`, "gate_paper" (two-sided, 95 %), "gate_upper" and "gate_soft" (99.9 %),
+        and the methods of `robust_ekf`, "gate_each" (99.9 %), "huber", "student_t" and
+        "adaptive".
     every : int
         Estimates are returned at the samples every - 1, 2 every - 1, ...
     sigma_a : float
