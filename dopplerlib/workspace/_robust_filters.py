@@ -3,9 +3,6 @@
 Starts and filters are called as those of `_filters`.
 """
 
-import numpy as np
-
-from ..estimation import densities
 from ..estimation.extended_kalman import ekf
 from ..estimation.gaussian_sum import gaussian_sum
 from ..estimation.robust_kalman import robust_ekf
@@ -33,24 +30,11 @@ def gated_bank(z, s):
 
 def moving_bank(z, s):
     """Filter by gated Gaussian sums for several accelerations, weighed by their evidence."""
-    tracks = [
-        gaussian_sum(
-            z, s.array, s.mean, s.P, INTERVAL, sigma_a, s.sigma_f, every=s.every,
-            gate_probability=PASSED,
-        )
-        for sigma_a in MOTIONS
-    ]  # fmt: skip
-    x, P, evidence = (
-        np.stack([getattr(track, name) for track in tracks], axis=2)
-        for name in ("x", "P", "evidence")
-    )
-    alive = evidence > -np.inf
-    weight = np.exp(evidence - np.where(alive.any(axis=2), evidence.max(axis=2), 0.0)[..., None])
-    with np.errstate(invalid="ignore"):
-        weight = weight / weight.sum(axis=2, keepdims=True)
-    return densities.mixture(
-        np.where(alive[..., None], x, 0.0), np.where(alive[..., None, None], P, 0.0), weight
-    )
+    found = gaussian_sum(
+        z, s.array, s.mean, s.P, INTERVAL, MOTIONS, s.sigma_f, every=s.every,
+        gate_probability=PASSED,
+    )  # fmt: skip
+    return found.x, found.P
 
 
 def gated(gate, probability=PASSED):
