@@ -15,9 +15,11 @@ def average(found):
     if len(found) == 1:
         return found[0], np.ones((*found[0].members.shape, 1))
     every = {name: np.stack([getattr(f, name) for f in found], -1) for name in Estimates._fields}
-    total = logsumexp(every["evidence"], axis=-1)
+    # A filter with a wrong assumption may have no estimate at a time, although it has members.
+    evidence = np.where(np.isnan(every["x"][..., 0, :]), -np.inf, every["evidence"])
+    total = logsumexp(evidence, axis=-1)
     there = np.isfinite(total)
-    apart = every["evidence"] - np.where(there, total, 0.0)[..., None]
+    apart = evidence - np.where(there, total, 0.0)[..., None]
     p = np.where(there[..., None], np.exp(apart), 1 / len(found))
     # An assumption without members has no weight, wherever another one has some.
     used = (p > 0) | ~there[..., None]

@@ -39,13 +39,18 @@ def refuse(held, weights, length, x, P, weight, count, positions, r, c, flat, li
             spread = max(spread / total - mean * mean, 0.0)
         else:
             seen = 0
+            # In order, by insertion: np.median takes seconds to compile.
             for k in range(length):
                 if not np.isnan(held[k, n]):
-                    own[seen] = held[k, n]
+                    p = seen
+                    while p > 0 and own[p - 1] > held[k, n]:
+                        own[p] = own[p - 1]
+                        p -= 1
+                    own[p] = held[k, n]
                     seen += 1
             if seen == 0:
                 continue
-            mean = np.median(own[:seen])
+            mean = (own[(seen - 1) // 2] + own[seen // 2]) / 2
         for k in range(length):
             off, S = held[k, n] - mean, spread + 1 / weights[k, n]
             if off * off > limit * S:

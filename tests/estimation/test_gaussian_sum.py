@@ -5,6 +5,8 @@ import pytest
 from scipy import stats
 
 from dopplerlib import RadarArray, constant_velocity, doppler_jacobian, doppler_shift, ekf
+from dopplerlib.estimation._gaussian_sum_average import average
+from dopplerlib.estimation._gaussian_sum_setting import blank
 from dopplerlib.estimation.gaussian_sum import gaussian_sum, gaussian_sum_online
 
 ARRAY = RadarArray.ring(6, 0.2)
@@ -192,27 +194,37 @@ def test_the_evidence_is_that_of_the_kalman_filter():
         assert found.evidence[-1] == pytest.approx(expected, abs=left)
 
 
+def test_an_assumption_without_an_estimate_has_no_weight():
+    x = [np.array([[np.nan] * 6, [1.0] * 6]), np.array([[2.0] * 6, [2.0] * 6])]
+    found = [blank(2, mixture=1)._replace(x=at, P=np.ones((2, 6, 6)) + at[:, :1, None],
+             evidence=np.zeros(2)) for at in x]  # fmt: skip
+    mean, p = average(found)
+    np.testing.assert_array_equal(p, [[0, 1], [0.5, 0.5]])
+    np.testing.assert_array_equal(mean.x, [[2.0] * 6, [1.5] * 6])
+    np.testing.assert_array_equal(mean.P[0], 3)
+
+
 def test_assumptions_are_weighed_by_their_evidence():
     _, z = records(3, 63, np.random.default_rng(9))
     several, setting = (0.4, 0, 4), (ARRAY, X0, P0, T)
     tracks = [gaussian_sum(z, *setting, s, 0.4, every=21, mixture=5) for s in several]
-    average = gaussian_sum(z, *setting, several, 0.4, every=21, mixture=5)
-    p = average.probabilities
+    together = gaussian_sum(z, *setting, several, 0.4, every=21, mixture=5)
+    p = together.probabilities
     density = np.exp(np.stack([t.evidence for t in tracks], axis=-1) + 150)
     np.testing.assert_allclose(p, density / density.sum(axis=-1, keepdims=True), rtol=1e-9)
-    np.testing.assert_allclose(np.exp(average.evidence + 150), density.mean(axis=-1), rtol=1e-9)
+    np.testing.assert_allclose(np.exp(together.evidence + 150), density.mean(axis=-1), rtol=1e-9)
     x = np.stack([t.x for t in tracks], axis=-1)
-    np.testing.assert_allclose(average.x, np.sum(p[..., None, :] * x, axis=-1), rtol=1e-9)
+    np.testing.assert_allclose(together.x, np.sum(p[..., None, :] * x, axis=-1), rtol=1e-9)
     square = np.stack([t.P + t.x[..., None] * t.x[..., None, :] for t in tracks], axis=-1)
     expected = np.sum(p[..., None, None, :] * square, axis=-1)
-    found = average.P + average.x[..., None] * average.x[..., None, :]
+    found = together.P + together.x[..., None] * together.x[..., None, :]
     np.testing.assert_allclose(found, expected, rtol=1e-9)
     every = np.concatenate([p[..., [i]] * t.weights for i, t in enumerate(tracks)], axis=-1)
-    np.testing.assert_allclose(average.weights, -np.sort(-every, axis=-1)[..., :5])
+    np.testing.assert_allclose(together.weights, -np.sort(-every, axis=-1)[..., :5])
     first = np.concatenate([t.means for t in tracks], axis=-2)
     place = np.argmax(every, axis=-1)[..., None, None]
     np.testing.assert_array_equal(
-        average.means[..., 0, :], np.take_along_axis(first, place, axis=-2)[..., 0, :]
+        together.means[..., 0, :], np.take_along_axis(first, place, axis=-2)[..., 0, :]
     )
 
 
