@@ -10,7 +10,7 @@ from .._hints import Positive, checked, exactly, up_to
 from .._typing import ArrayLike, FloatArray
 from ..estimation import covariances
 
-_DRAWN = 2**18  # states in memory together
+_DRAWN = 2**14  # states at a time, which fit into the cache of a processor
 
 
 def _not_negative(name, value):

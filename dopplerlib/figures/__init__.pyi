@@ -22,6 +22,7 @@ from . import real_shifts as real_shifts
 from . import road as road
 from . import sombatsatien as sombatsatien
 from . import start as start
+from . import stopping as stopping
 from . import style as style
 from . import tour as tour
 from . import valarmathi as valarmathi

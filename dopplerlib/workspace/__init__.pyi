@@ -3,6 +3,7 @@ from . import comparison as comparison
 from . import errors as errors
 from . import faults as faults
 from . import layouts as layouts
+from . import stop_study as stop_study
 from . import stopping as stopping
 from . import targets as targets
 from . import trackers as trackers
