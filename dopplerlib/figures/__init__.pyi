@@ -13,6 +13,7 @@ from . import figure6 as figure6
 from . import geometry as geometry
 from . import index as index
 from . import iq as iq
+from . import layouts as layouts
 from . import macaveiu as macaveiu
 from . import macaveiu_beyond as macaveiu_beyond
 from . import macaveiu_filter as macaveiu_filter

@@ -2,6 +2,7 @@
 from . import comparison as comparison
 from . import errors as errors
 from . import faults as faults
+from . import layout_results as layout_results
 from . import layouts as layouts
 from . import stop_study as stop_study
 from . import stopping as stopping

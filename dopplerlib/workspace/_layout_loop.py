@@ -23,6 +23,13 @@ _SEPARATE = 1.0  # standard deviation: nearer to each other two valleys are one
 
 
 @compiled
+def _put(target, source):
+    """Copy a state; numba takes seconds to compile what NumPy writes in one line."""
+    for i in range(6):
+        target[i] = source[i]
+
+
+@compiled
 def _normal(x, true, positions, c, seen, weights, mean, prior, A, g):
     """Return half of chi-square of the state `x` where the shifts are those of `true`.
 
@@ -137,7 +144,7 @@ def _covariances(x, positions, c, seen, weights, prior, end, out):
     for r in range(len(x)):
         _normal(x[r], true, positions, c, seen, weights, x[r], prior, A, g)
         if np.isnan(factor(A, L)):
-            out[r] = np.nan
+            out[r, 0, 0] = np.nan
             continue
         for j in range(6):
             for i in range(6):
@@ -148,7 +155,8 @@ def _covariances(x, positions, c, seen, weights, prior, end, out):
             solve(L, column)
             for i in range(3):
                 column[i] += end * column[i + 3]
-            out[r, :, j] = column
+            for i in range(6):
+                out[r, i, j] = column[i]
 
 
 @compiled
@@ -166,15 +174,15 @@ def _chances(x, starts, positions, c, seen, weights, mean, prior, least, chance,
     at_here, at_there = np.empty_like(true), np.empty_like(true)
     for r in range(len(x)):
         chance[r] = 0.0
-        twin[r] = x[r]
+        _put(twin[r], x[r])
         _shifts(x[r], positions, c, seen, true)
-        here[:] = x[r]
+        _put(here, x[r])
         cost = _descend(here, true, positions, c, seen, weights, mean, prior, least, A, g, L,
                         here, unknown)  # fmt: skip
         volume = factor(A, L)
         _shifts(here, positions, c, seen, at_here)
         for s in range(starts.shape[1]):
-            there[:] = starts[r, s]
+            _put(there, starts[r, s])
             if not there[0] > least:
                 continue
             cost_twin = _descend(there, true, positions, c, seen, weights, mean, prior, least,
@@ -193,7 +201,7 @@ def _chances(x, starts, positions, c, seen, weights, mean, prior, least, chance,
             found = 0.5 * erfc((0.5 * square - ahead) / sqrt(2 * square))
             if found > chance[r]:
                 chance[r] = found
-                twin[r] = there
+                _put(twin[r], there)
 
 
 def _cached(compiled_in):

@@ -47,24 +47,30 @@ def named_layouts() -> dict[str, RadarArray]:
     dict of RadarArray
         The ring of the paper; the same with one sensor in the center, a gap on the rim; five even
         on the rim and one in the center; three on the rim and three on half of the radius, turned
-        by 60 degrees; the ring with every other sensor set back by 5 cm.
+        by 60 degrees; the ring with every other sensor set back by 5 cm; five and the center with
+        two neighbors set back by 5 cm and the center by half of that; the ring with every other
+        sensor set back and the last one, which is, moved to the center.
 
     Examples
     --------
     >>> [len(array) for array in named_layouts().values()]
-    [6, 6, 6, 6, 6]
+    [6, 6, 6, 6, 6, 6, 6]
     """
     ring, center = ARRAY.positions, np.zeros((1, 3))
     five, three = (RadarArray.ring(n, _RADIUS).positions for n in (5, 3))
     inner = RadarArray.ring(3, _RADIUS / 2, np.pi / 3).positions
     back = ring.copy()
     back[1::2, 0] = -0.05
+    tilted = np.concatenate([five, center])
+    tilted[[2, 3, 5], 0] = -0.05, -0.05, -0.025
     return {
         "ring of six": ARRAY,
         "one moved to the center": RadarArray(np.concatenate([ring[:5], center])),
         "five and the center": RadarArray(np.concatenate([five, center])),
         "three and three, turned": RadarArray(np.concatenate([three, inner])),
         "ring, every other one set back": RadarArray(back),
+        "five and the center, two set back": RadarArray(tilted),
+        "one in the center, two set back": RadarArray(np.concatenate([back[:5], center])),
     }
 
 
@@ -149,11 +155,11 @@ def twins(x: States, array: RadarArray, samples: Count = 100) -> Twins:
     -----
     Shifts without noise have the bottom of the true valley near the truth. Searches for another
     one start at five states with the same first harmonic around the array, the middle one of which
-    is its twin (`dopplerlib.derive.ring_coordinates`). With noise of deviation one, the logarithm
-    of the ratio of the weights, by Laplace's approximation, is normal with the deviation d, the
-    distance of the shifts of both, and a mean of -d^2/2 and what prior and volumes differ by: the
-    pairwise error probability of Van Trees (1968). What the search does not find does not count:
-    a probability is too low rather than too high.
+    is its twin (`dopplerlib.derive.ring_coordinates`). With noise, the logarithm of the ratio of
+    the weights, by Laplace's approximation, is normal: its standard deviation is the distance d of
+    the shifts of both, in standard deviations of the noise, its mean is -d^2/2 and the difference
+    that prior and volumes make. A valley that is not found does not count, so that a probability
+    is too low rather than too high.
 
     Examples
     --------
