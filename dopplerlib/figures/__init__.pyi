@@ -8,6 +8,7 @@ from . import coordinates as coordinates
 from . import derivation as derivation
 from . import ekf as ekf
 from . import end_to_end as end_to_end
+from . import faults as faults
 from . import figure4 as figure4
 from . import figure6 as figure6
 from . import geometry as geometry

@@ -1,6 +1,7 @@
 # Made by python -m tools.stubs; do not edit.
 from . import comparison as comparison
 from . import errors as errors
+from . import fault_study as fault_study
 from . import faults as faults
 from . import layout_results as layout_results
 from . import layouts as layouts
