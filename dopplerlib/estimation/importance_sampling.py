@@ -22,7 +22,7 @@ _BACKWARD = np.array([1.0, 1, 1, -1, -1, -1])  # of a state: that in reversed ti
 _MEMBERS = 100  # of the Gaussian sum that are taken, at most
 _ROUNDS, _ENOUGH = 4, 0.5  # fits, at most, of the proposal; efficiency at which none follows
 _BLOCK = 5  # samples that the Gaussian sum takes together, at most
-_BACK = 9.0  # times the covariance at the end, from which the Gaussian sum goes back
+_BACK = 4.0  # times the covariance at the end, from which the Gaussian sum goes back
 _NONE = np.nan, np.nan, 0.0, np.nan, np.nan  # where no state was found
 
 

@@ -145,10 +145,10 @@ def pcrlb(
     Notes
     -----
     Tichavský, Muravchik and Nehorai (1998): the recursion of `path_crlb`, with the mean over paths
-    of H' R^-1 H. No estimator whatever has a smaller mean squared error over the paths. But
-    paths near a sensor dominate the mean of the information, and hardly the mean squared error, and
-    what one path leaves unseen another shows: the inverse of a mean is less than the mean of
-    inverses (Jensen), and the bound may lie out of reach.
+    of H' R^-1 H. No estimator whatever has a smaller mean squared error over the paths.
+    But what one path leaves unseen another shows, and the mean of their information leaves nothing
+    unseen: the inverse of a mean is less than the mean of inverses (Jensen), and the bound may lie
+    out of reach.
 
     Examples
     --------

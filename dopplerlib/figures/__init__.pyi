@@ -28,3 +28,4 @@ from . import stopping as stopping
 from . import style as style
 from . import tour as tour
 from . import valarmathi as valarmathi
+from . import yardsticks as yardsticks

@@ -9,3 +9,4 @@ from . import stop_study as stop_study
 from . import stopping as stopping
 from . import targets as targets
 from . import trackers as trackers
+from . import yardsticks as yardsticks

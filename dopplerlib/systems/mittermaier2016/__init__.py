@@ -17,6 +17,7 @@ _HOME = by_name(
         "end_to_end": "track_iq",
         "chain_bounds": "median_error position_bound position_bound_iq record_length",
         "chain_errors": "TrackErrors track_errors",
+        "chain_sums": "saved_sum_errors sum_errors",
         "simulated_iq": "SIMULATED read_simulated_iq simulated_recording write_simulated_iq",
         "readings.ablation": "Consistency ablated_ekf consistency_runs matched_P0 range_claims",
         "readings.faults": "faulty_filters linear_filter linear_world",

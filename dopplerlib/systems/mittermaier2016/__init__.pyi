@@ -1,6 +1,7 @@
 # Made by python -m tools.stubs; do not edit.
 from . import chain_bounds as chain_bounds
 from . import chain_errors as chain_errors
+from . import chain_sums as chain_sums
 from . import end_to_end as end_to_end
 from . import error_maps as error_maps
 from . import evidence as evidence
@@ -16,6 +17,8 @@ from .chain_bounds import position_bound_iq as position_bound_iq
 from .chain_bounds import record_length as record_length
 from .chain_errors import TrackErrors as TrackErrors
 from .chain_errors import track_errors as track_errors
+from .chain_sums import saved_sum_errors as saved_sum_errors
+from .chain_sums import sum_errors as sum_errors
 from .end_to_end import track_iq as track_iq
 from .error_maps import ErrorMap as ErrorMap
 from .error_maps import comparable as comparable
@@ -122,12 +125,14 @@ __all__ = [
     "run_noise_sweep",
     "samples_needed",
     "saved_noise_sweep",
+    "saved_sum_errors",
     "saved_sweep_readings",
     "scored_levels",
     "simulated_recording",
     "start_box",
     "start_misfit",
     "still_counts",
+    "sum_errors",
     "sweep_array",
     "sweep_bounds",
     "sweep_readings",
