@@ -15,7 +15,7 @@ PARAMETERS = {
     "seed": 2031,
     "targets": 1700,  # in a part, of which collisions and near misses are taken
     "passing": [46, 80, 46],  # in a part of each of `SCENES`, about as many as collisions
-    "parts": [29, 3, 2],  # of each
+    "parts": [30, 4, 5],  # of each
 }
 
 

@@ -123,7 +123,7 @@ class StopStudy:
     --------
     >>> study = saved_stops("workspace")
     >>> print(study.summary("truth", "within 0.3 s", 0.5).false)
-    0 (0 to 0.00276)
+    0 (0 to 0.00267)
     """
 
     courses: Courses

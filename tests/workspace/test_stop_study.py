@@ -47,7 +47,7 @@ def test_the_saved_study_has_the_courses_that_were_asked_for():
         kind = saved_stops(scene).courses.kind
         assert set(kind) == {"collision", "near miss", "passing"}
         assert (kind == "passing").sum() == parts * passing
-        assert (kind == "collision").sum() > (1000 if scene == "workspace" else 60)
+        assert (kind == "collision").sum() > (1000 if scene == "workspace" else 150)
 
 
 @pytest.fixture
