@@ -45,7 +45,7 @@ WORDS = {
     r"\b(so|how) (well|good)\b": "accuracy",
     r"\bhow (often|many|far|much|long|likely|old)\b": "number, fraction, distance, length, age",
     r"^(What|Why|Which|How (?!to\b))\b|^Return (what|how)\b": "a noun as subject",
-    r"\b[Ww]hat (a|an|the|is|are|was|were|it|of|comes|stands)\b": "a noun as subject",
+    r"(?<!knows )\b[Ww]hat (a|an|the|is|are|was|were|it|of|comes|stands)\b": "a noun as subject",
     r"\bnot to be (seen|known)\b|\bcannot see\b": "unobservable",
     r"\bno sound\b": "not valid",
     r"\bdie out\b|\bsettles\b": "stable, converges",

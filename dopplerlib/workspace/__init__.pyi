@@ -1,5 +1,6 @@
 # Made by python -m tools.stubs; do not edit.
 from . import comparison as comparison
+from . import demands as demands
 from . import errors as errors
 from . import fault_study as fault_study
 from . import faults as faults

@@ -19,6 +19,7 @@ from .targets import INTERVAL
 FIRST = 10  # samples from which a start is made
 ITERATIONS = 3  # linearizations of filters that iterate
 PARTICLES = 3000
+NOISES = 0.0, 0.1, 0.4  # accelerations in m/s^2 between which a sum finds out
 _PAPER_P0 = 0.1 * np.eye(6)
 # Where maximum likelihood searches: the room before the ring, and the speed of the paper's drives.
 _BOX = [0.1, -0.75, -0.75, -2, -2, -2], [1.5, 0.75, 0.75, 2, 2, 2]
@@ -143,6 +144,12 @@ def in_state(s):
 def bank(z, s):
     """Filter by the Gaussian sum."""
     found = gaussian_sum(z, *s.given, every=s.every)
+    return found.x, found.P
+
+
+def learning_bank(z, s):
+    """Filter by Gaussian sums for several accelerations, weighed by their evidence."""
+    found = gaussian_sum(z, s.array, s.mean, s.P, INTERVAL, NOISES, s.sigma_f, every=s.every)
     return found.x, found.P
 
 

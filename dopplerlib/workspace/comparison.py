@@ -1,11 +1,13 @@
-"""Trackers compared on the same records, in four cases."""
+"""Trackers compared on the same records, in four cases, and results of a saved study."""
 
+from dataclasses import fields
 from typing import Annotated, Literal
 
 import numpy as np
 
+from .._data import read_json, results
 from .._hints import Count, Index, Positive, between, checked
-from .errors import EVERY, TrackErrors, track_errors
+from .errors import EVERY, ErrorSummary, TrackErrors, track_errors
 from .targets import (
     PRIOR_COVARIANCE,
     PRIOR_MEAN,
@@ -22,6 +24,16 @@ CASES = {"A": (SIGMA_A, None), "B": (0.0, None), "C": (SIGMA_A, TABLE_2), "D": (
 PRIORS = {
     "own": (PRIOR_MEAN, PRIOR_COVARIANCE),
     "broad": ([0.8, 0, 0, -0.5, 0, 0], np.diag([0.35, 0.4, 0.4, 0.7, 0.7, 0.7]) ** 2),
+}
+# Settings of trackers: as the truths are, or otherwise in one respect.
+ASSUMED = {
+    "right": {},
+    "sigma_f 0.32 Hz": {"sigma_f": 0.32},
+    "sigma_f 0.5 Hz": {"sigma_f": 0.5},
+    "sigma_a 0.2 m/s^2": {"sigma_a": 0.2},
+    "sigma_a 0.4 m/s^2": {"sigma_a": 0.4},
+    "sigma_a 0.8 m/s^2": {"sigma_a": 0.8},
+    "broad prior": {"prior": "broad"},
 }
 
 
@@ -78,3 +90,33 @@ def case_errors(
         z, tracker, every=EVERY, sigma_a=assumed, sigma_f=sigma_f, prior=PRIORS[prior], rng=own
     )
     return track_errors(paths, x, P, sigma_a=moved, every=EVERY)
+
+
+def saved_comparison() -> dict[tuple[str, str, str], ErrorSummary]:
+    """Return the statistics of the saved study, by case, tracker and assumption.
+
+    Returns
+    -------
+    dict of ErrorSummary
+        What is assumed is "right", or another of the settings of `ASSUMED`. Fractions `inside` and
+        along `axes` are NaN but for the tracker "bank" with the right ones.
+
+    Notes
+    -----
+    ``python -m studies consistent_tracker`` makes it; ``results/README.md`` says how.
+
+    Examples
+    --------
+    >>> found = saved_comparison()["A", "bank", "right"]
+    >>> bool(abs(found.nees[10] - 6) < 1)
+    True
+    """
+    rows = read_json("consistent_tracker.json", folder=results)["rows"]
+    found = {}
+    for row in rows:
+        n = len(row["runs"])
+        row = {"axes": np.full((n, 6), np.nan), "inside": np.full(n, np.nan)} | row
+        found[row["case"], row["tracker"], row["assumed"]] = ErrorSummary(
+            **{field.name: np.array(row[field.name], float) for field in fields(ErrorSummary)}
+        )
+    return found

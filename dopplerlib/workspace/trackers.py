@@ -47,6 +47,7 @@ TRACKERS = {
     "batch": _Tracker("maximum likelihood of all samples", f.batch),
     "particles": _Tracker("particle filter", f.particles),
     "bank": _Tracker("Gaussian sum", f.bank),
+    "learning_bank": _Tracker("Gaussian sums, three process noises", f.learning_bank),
     "gated_bank": _Tracker("Gaussian sum, gate", r.gated_bank),
     "moving_bank": _Tracker("Gaussian sums, gate, three motions", r.moving_bank),
     "gated_start": _Tracker("EKF, gated start", f.extended, r.from_gated_bayes),
@@ -102,7 +103,8 @@ def track_targets(
         each output the likeliest straight path of all samples, without a prior. "particles":
         regularized particle filter, 3000 particles. "bank": `gaussian_sum`; "gated_bank": with a
         gate of 99.9 %; "moving_bank": three of these for accelerations of 0.4, 4 and 40 m/s^2,
-        weighed by their evidence, whatever `sigma_a` is. "gated_start": "ekf_bayes" with that
+        weighed by their evidence, whatever `sigma_a` is; "learning_bank": the same without a gate
+        for 0, 0.1 and 0.4 m/s^2. "gated_start": "ekf_bayes" with that
         gate at the start, "gated_start_ukf" the same with cubature points; from the same start
         the gates of `ekf`, "gate_paper" (two-sided, 95 %), "gate_upper" and "gate_soft" (99.9 %),
         and the methods of `robust_ekf`, "gate_each" (99.9 %), "huber", "student_t" and

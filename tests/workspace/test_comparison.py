@@ -5,9 +5,11 @@ import pytest
 from scipy.stats import chi2, norm
 
 from dopplerlib import doppler_shift
-from dopplerlib.workspace.comparison import case_errors
+from dopplerlib._data import read_json, results
+from dopplerlib.workspace.comparison import case_errors, saved_comparison
 from dopplerlib.workspace.errors import AXIS_95, EVERY, NEES_95, TrackErrors, error_summary
 from dopplerlib.workspace.targets import ARRAY
+from studies import consistent_tracker as study
 
 
 def test_constants_are_the_quantiles():
@@ -93,3 +95,24 @@ def test_the_errors_are_those_of_the_tracker(monkeypatch):
     np.testing.assert_allclose(errors.velocity[1], 0.1)
     noise = (paths[0] - doppler_shift(drawn[0], ARRAY)) / 0.4
     assert abs(noise.std() - 1) < 0.05
+
+
+@pytest.mark.parametrize(
+    "name", [("A", "bank"), ("B", "bank"), ("C", "bank"), ("D", "bank"), ("A", "paper")]
+)
+def test_the_first_runs_of_the_saved_study_come_out_again(name):
+    saved = read_json("consistent_tracker.json", folder=results)
+    rows = {(row["case"], row["tracker"], row["assumed"]): row for row in saved["rows"]}
+    runs, times = study.FIRST
+    found = case_errors(*name, 0, len(runs), seed=saved["seed"]).nees[:, times]
+    # Four digits are saved. A filter that is lost amplifies rounding.
+    np.testing.assert_allclose(
+        found, rows[*name, "right"]["first"], rtol=1e-3 if name[1] == "bank" else 0.02
+    )
+
+
+def test_the_saved_study_holds_all_that_was_tried():
+    saved = saved_comparison()
+    assert sorted(saved) == sorted(item[:3] for item in study.items())
+    for case, tracker, assumed, runs in study.items():
+        assert saved[case, tracker, assumed].runs[0] == runs

@@ -21,7 +21,7 @@ DOUBTING = {
     "huber", "student_t", "adaptive",
 }  # fmt: skip
 STARTED = {"paper", "own_covariance", "ekf_bayes", "iekf_bayes", "ring_iekf_bayes"} | DOUBTING
-FROM_PRIOR = sorted(set(TRACKERS) - STARTED - {"batch", "moving_bank"})
+FROM_PRIOR = sorted(set(TRACKERS) - STARTED - {"batch", "moving_bank", "learning_bank"})
 X0 = np.array([0.6, 0.1, 0.1, -0.7, 0.05, 0.0])
 NARROW = np.diag([2e-3, 2e-3, 2e-3, 5e-3, 5e-3, 5e-3]) ** 2
 
