@@ -8,7 +8,7 @@ import gc
 
 import numpy as np
 
-from dopplerlib import RadarArray, ekf, ml_frequency, ml_initialize
+from dopplerlib import RadarArray, doppler_shift, ekf, ml_frequency, ml_initialize
 from dopplerlib.estimation._ekf_loop import LANES
 from dopplerlib.estimation.gaussian_sum import gaussian_sum
 from dopplerlib.estimation.importance_sampling import importance_posterior
@@ -30,9 +30,10 @@ def main(argv=None):
         ekf(z, array, start, np.eye(6), 0.001, 1.0, 1.0)
     ml_initialize(z, array, 1.0, 0.001, box)
     gaussian_sum(z[0], array, start, np.eye(6), 0.001, 1.0, 1.0)
-    for sigma_a in (0.0, 1.0):
-        rng = np.random.default_rng(1)
-        importance_posterior(z[0], array, start, np.eye(6), 0.001, sigma_a, 1.0, rng=rng, draws=100)
+    # Its prior holds the target of these shifts: without a state there is nothing to weigh.
+    shifts, prior = np.tile(doppler_shift(start, array), (2, 1)), (start, 0.01 * np.eye(6))
+    rng = np.random.default_rng(1)
+    importance_posterior(shifts, array, *prior, 0.001, 1.0, 1.0, rng=rng, draws=100)
     path_crlb(np.ones((2, 6)), array, 1.0, np.eye(6))
     layout_quality(start[None], array)
     ml_frequency(np.ones(16, complex), 1.0)
