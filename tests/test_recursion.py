@@ -80,6 +80,9 @@ def test_a_loop_that_carries_an_estimate_is_found(text, count):
     assert len(loops(ast.parse(text))) == count
 
 
+NAMED_TUPLE = {"_asdict", "_fields", "_make", "_replace"}  # public, so as not to be field names
+
+
 def private_attributes(tree):
     """Return the private attributes that are taken of anything but self, cls and super()."""
     return [
@@ -88,6 +91,7 @@ def private_attributes(tree):
         if isinstance(node, ast.Attribute)
         and node.attr.startswith("_")
         and not node.attr.endswith("__")
+        and node.attr not in NAMED_TUPLE
         and ast.unparse(node.value) not in ("self", "cls", "super()")
     ]
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from .._records import record
 from ..model.radar_array import RadarArray
-from . import layouts
+from .layouts import _LEAST, _blocks, _prior, _starts, named_layouts
 from .targets import ARRAY, INTERVAL, PRIOR_MEAN
 
 _POPULATION, _GENERATIONS = 8, 60  # of differential evolution; the first is by parameter
@@ -147,7 +147,7 @@ def fewest_twins(start, x, limit, *, rng, radius=0.2, depth=0.0, generations=80)
 
     x, n = np.ascontiguousarray(x), len(start)
     size = n * (3 if depth else 2)
-    tried = [start, *layouts.named_layouts().values()]
+    tried = [start, *named_layouts().values()]
     tried += [RadarArray(_positions(rng.random(size), n, radius, depth)) for _ in range(_TRIED)]
     hard = x[np.max([_chances(a.positions, x) for a in tried], axis=0) > _EVER]
     limit = np.log(limit)
@@ -192,12 +192,12 @@ def _parameters(positions, radius, depth):
 def _log_bound(positions, x, samples, static):
     from . import _layout_loop
 
-    seen, weights = layouts._blocks(samples, len(positions), _COARSE)
+    seen, weights = _blocks(samples, len(positions), _COARSE)
     bounds = np.empty((len(x), 6, 6))
     end = 0.0 if static else samples * INTERVAL
     _layout_loop.covariances(
         x, positions, ARRAY.doppler_per_speed, 0 * seen if static else seen, weights,
-        layouts._prior(), end, bounds,
+        _prior(), end, bounds,
     )  # fmt: skip
     return float(np.mean(np.log(np.trace(bounds[:, :3, :3], axis1=1, axis2=2)))) / 2
 
@@ -206,10 +206,10 @@ def _chances(positions, x):
     from . import _layout_loop
 
     array = RadarArray(positions)
-    seen, weights = layouts._blocks(50, len(positions), _COARSE)
+    seen, weights = _blocks(50, len(positions), _COARSE)
     chance, other = np.empty(len(x)), np.empty((len(x), 6))
     _layout_loop.chances(
-        x, layouts._starts(x, array, 25 * INTERVAL, _TURNS), positions, array.doppler_per_speed,
-        seen, weights, PRIOR_MEAN, layouts._prior(), layouts._LEAST, chance, other,
+        x, _starts(x, array, 25 * INTERVAL, _TURNS), positions, array.doppler_per_speed,
+        seen, weights, PRIOR_MEAN, _prior(), _LEAST, chance, other,
     )  # fmt: skip
     return chance
