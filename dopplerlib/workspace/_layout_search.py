@@ -4,7 +4,8 @@ import numpy as np
 
 from .._records import record
 from ..model.radar_array import RadarArray
-from .layouts import _LEAST, _blocks, _prior, _starts, named_layouts
+from ._layout_valleys import LEAST, blocks, prior, starts
+from .layouts import named_layouts
 from .targets import ARRAY, INTERVAL, PRIOR_MEAN
 
 _POPULATION, _GENERATIONS = 8, 60  # of differential evolution; the first is by parameter
@@ -192,12 +193,12 @@ def _parameters(positions, radius, depth):
 def _log_bound(positions, x, samples, static):
     from . import _layout_loop
 
-    seen, weights = _blocks(samples, len(positions), _COARSE)
+    seen, weights = blocks(samples, len(positions), _COARSE)
     bounds = np.empty((len(x), 6, 6))
     end = 0.0 if static else samples * INTERVAL
     _layout_loop.covariances(
         x, positions, ARRAY.doppler_per_speed, 0 * seen if static else seen, weights,
-        _prior(), end, bounds,
+        prior(), end, bounds,
     )  # fmt: skip
     return float(np.mean(np.log(np.trace(bounds[:, :3, :3], axis1=1, axis2=2)))) / 2
 
@@ -206,10 +207,10 @@ def _chances(positions, x):
     from . import _layout_loop
 
     array = RadarArray(positions)
-    seen, weights = _blocks(50, len(positions), _COARSE)
+    seen, weights = blocks(50, len(positions), _COARSE)
     chance, other = np.empty(len(x)), np.empty((len(x), 6))
     _layout_loop.chances(
-        x, _starts(x, array, 25 * INTERVAL, _TURNS), positions, array.doppler_per_speed,
-        seen, weights, PRIOR_MEAN, _prior(), _LEAST, chance, other,
+        x, starts(x, array, 25 * INTERVAL, _TURNS), positions, array.doppler_per_speed,
+        seen, weights, PRIOR_MEAN, prior(), LEAST, chance, other,
     )  # fmt: skip
     return chance

@@ -10,10 +10,9 @@ from .._typing import FloatArray
 from ..evaluation.path_bounds import path_crlb
 from ..model.information import fisher_information
 from ..model.radar_array import RadarArray
+from ._layout_valleys import LEAST, blocks, prior, starts
 from .targets import ARRAY, INTERVAL, PRIOR_COVARIANCE, PRIOR_MEAN, SIGMA_F
 
-_BLOCK = 10  # samples that are taken together: the bound grows by 0.2 % at most
-_LEAST = 0.03  # in m: a valley nearer to the plane x = 0 is none
 # Directions, from the true one, in which a search for another valley starts; half a turn is the
 # twin of a plane array.
 _TURNS = np.pi * np.arange(1, 6) / 3
@@ -121,7 +120,7 @@ def layout_quality(x: States, array: RadarArray) -> LayoutQuality:
     0.24
     0.13
     """
-    static = np.linalg.inv(_prior() + fisher_information(x, array, SIGMA_F, 10))
+    static = np.linalg.inv(prior() + fisher_information(x, array, SIGMA_F, 10))
     path = np.repeat(x[:, None], 100, axis=1)
     path[..., :3] += INTERVAL * np.arange(1, 101)[:, None] * x[:, None, 3:]
     moving = path_crlb(path, array, SIGMA_F, PRIOR_COVARIANCE, INTERVAL, every=100)[:, 0, :3, :3]
@@ -171,46 +170,10 @@ def twins(x: States, array: RadarArray, samples: Count = 100) -> Twins:
     from . import _layout_loop
 
     x = np.ascontiguousarray(x)
-    seen, weights = _blocks(samples, len(array))
+    seen, weights = blocks(samples, len(array))
     probability, other = np.empty(len(x)), np.empty((len(x), 6))
     _layout_loop.chances(
-        x, _starts(x, array, samples * INTERVAL / 2, _TURNS), array.positions,
-        array.doppler_per_speed, seen, weights, PRIOR_MEAN, _prior(), _LEAST, probability, other,
+        x, starts(x, array, samples * INTERVAL / 2, _TURNS), array.positions,
+        array.doppler_per_speed, seen, weights, PRIOR_MEAN, prior(), LEAST, probability, other,
     )  # fmt: skip
     return Twins(probability, other)
-
-
-def _prior():
-    return np.linalg.inv(PRIOR_COVARIANCE)
-
-
-def _blocks(samples, sensors, block=_BLOCK):
-    """Return times (B,) of blocks of samples, and weights (B, N) of their means."""
-    edges = np.append(np.arange(0, samples, block), samples)
-    weights = np.diff(edges)[:, None] / SIGMA_F**2 * np.ones(sensors)
-    return (edges[:-1] + edges[1:] + 1) / 2 * INTERVAL, weights
-
-
-def _starts(x, array, middle, turns):
-    """Return states (R, S, 6) whose p.v, |p| and first harmonic are those of x after `middle`.
-
-    In ring coordinates eta turns about m / b, as far as the target stays in front; else x is -1.
-    """
-    around = array.positions - array.positions.mean(axis=0)
-    square = np.mean(np.sum(around**2, axis=-1))
-    p, v = x[:, :3] + middle * x[:, 3:], x[:, 3:]
-    rho = np.sqrt(np.sum(p**2, axis=-1) + square)[:, None]
-    b = np.sum(p * v, axis=-1)[:, None] / rho
-    eta = p[:, 1:] / rho**2
-    with np.errstate(all="ignore"):
-        axis = v[:, 1:] / rho / b - eta
-        delta = eta - axis
-        turn = np.exp(1j * turns) * (delta[:, 0] + 1j * delta[:, 1])[:, None]
-        eta = axis[:, None] + np.stack([turn.real, turn.imag], axis=-1)
-        rho, b = rho[:, None], b[:, None]
-        across, across_v = eta * rho**2, (axis[:, None] + eta) * b * rho
-        ahead = np.sqrt(rho**2 - square - np.sum(across**2, axis=-1, keepdims=True))
-        ahead_v = (rho * b - np.sum(across * across_v, axis=-1, keepdims=True)) / ahead
-        starts = np.concatenate([ahead, across, ahead_v, across_v], axis=-1)
-        starts[..., :3] -= middle * starts[..., 3:]
-        return np.where(np.isfinite(starts).all(axis=-1, keepdims=True), starts, -1.0)
