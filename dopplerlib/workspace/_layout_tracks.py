@@ -5,6 +5,7 @@ import numpy as np
 from .._records import record
 from ..estimation.gaussian_sum import gaussian_sum
 from ..evaluation.path_bounds import path_crlb
+from .errors import BOUNDS, FAR
 from .layout_results import TIMES
 from .targets import (
     INTERVAL,
@@ -18,7 +19,6 @@ from .targets import (
 
 _EVERY = 10  # samples from one estimate to the next
 _HEAVIEST = 16  # members of the sum that are looked at
-_OFF, _BOUNDS = 0.05, 4.0  # lost: farther off in m, and in bounds
 
 
 @record
@@ -47,7 +47,7 @@ class LayoutTracks:
     @property
     def lost(self):
         """Whether a position is off by more than 5 cm and 4 bounds; NaN without a record."""
-        lost = (self.position > _OFF) & (self.position > _BOUNDS * self.bound)
+        lost = (self.position > FAR) & (self.position > BOUNDS * self.bound)
         return np.where(np.isnan(self.position), np.nan, lost)
 
 
@@ -93,7 +93,7 @@ def track_layout(array, runs, *, truths, noise, x0=None):
     means, weights = track.means[:, at], track.weights[:, at]
     other = np.sum(_delta(means, array) * _delta(x, array)[..., None, :], axis=-1) < 0
     off = np.linalg.norm(means[..., :3] - x[..., None, :3], axis=-1)
-    other &= off > _OFF
+    other &= off > FAR
     return LayoutTracks(
         np.linalg.norm(error[..., :3], axis=-1),
         np.abs(np.linalg.norm(track.x[:, at, :3], axis=-1) - np.linalg.norm(x[..., :3], axis=-1)),

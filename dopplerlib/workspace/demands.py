@@ -13,11 +13,12 @@ from .. import _checks
 from .._hints import Positive, checked
 from .._typing import FloatArray
 from ..evaluation.averages import average_interval
-from ..evaluation.intervals import ConfidenceInterval
+from ..evaluation.intervals import ConfidenceInterval, proportion_interval
 from ..evaluation.table import Table
 from .errors import ErrorSummary
 
 _Z = 1.96  # standard errors on either side that hold 95 %
+_MEDIAN = 1.17  # standard error of the median over that of the mean, of chi-square with six degrees
 
 
 class _Demand(NamedTuple):
@@ -27,37 +28,47 @@ class _Demand(NamedTuple):
     high: float
     first: float  # times in s, both inclusive
     last: float
-    value: Callable[[ErrorSummary], tuple[FloatArray, FloatArray]]  # and its standard error
+    value: Callable[[ErrorSummary], tuple[FloatArray, Callable[[int], ConfidenceInterval]]]
+
+
+def _with_error(value, error):
+    """Return values, and a function of the time's index for their interval."""
+    return value, lambda i: ConfidenceInterval(
+        value[i], value[i] - _Z * error[i], value[i] + _Z * error[i]
+    )
+
+
+def _share(value, runs):
+    # Exact: none of so many runs is not none of all.
+    return value, lambda i: proportion_interval(np.arange(runs[i]) < round(value[i] * runs[i]))
 
 
 def _nees(found):
-    return found.nees, found.nees_error
+    return _with_error(found.nees, found.nees_error)
 
 
 def _median(found):
-    # Of chi-square: the scatter of a median is that of the mean, nearly.
-    return found.nees_median, found.nees_error
+    return _with_error(found.nees_median, _MEDIAN * found.nees_error)
 
 
 def _position(found):
     ratio = found.position / found.position_bound
-    return ratio, ratio * found.position_error
+    return _with_error(ratio, ratio * found.position_error)
 
 
 def _velocity(found):
     ratio = found.velocity / found.velocity_bound
-    return ratio, ratio * found.velocity_error
+    return _with_error(ratio, ratio * found.velocity_error)
 
 
 def _lost(found):
-    return found.lost, np.sqrt(found.lost * (1 - found.lost) / found.runs)
+    return _share(found.lost, found.runs)
 
 
 def _axes(found):
     """Return the share farthest from 95 %, of the six axes."""
     far = np.abs(found.axes - 0.95).argmax(axis=-1)
-    share = np.take_along_axis(found.axes, far[:, None], axis=-1)[:, 0]
-    return share, np.sqrt(share * (1 - share) / found.runs)
+    return _share(np.take_along_axis(found.axes, far[:, None], axis=-1)[:, 0], found.runs)
 
 
 _DEMANDS = (
@@ -107,7 +118,7 @@ def demand_table(found: dict[str, ErrorSummary]) -> Table:
     for demand in _DEMANDS:
         for case in demand.cases:
             one = _checks.instance(f"found[{case!r}]", found.get(case), ErrorSummary)
-            value, error = demand.value(one)
+            value, interval = demand.value(one)
             there = np.flatnonzero(
                 (one.time > demand.first - 1e-9) & (one.time < demand.last + 1e-9)
             )
@@ -115,13 +126,9 @@ def demand_table(found: dict[str, ErrorSummary]) -> Table:
                 raise ValueError(f"found must reach {demand.first} s, got {one.time[-1]} s")
             beyond = np.maximum(value - demand.high, demand.low - value)[there]
             worst = there[beyond.argmax()]
-            spread = _Z * error[worst]
-            interval = ConfidenceInterval(
-                value[worst], value[worst] - spread, value[worst] + spread
-            )
             met = bool((beyond <= 0).all())
             limits = f"{demand.low:g} to {demand.high:g}" if demand.low else f"{demand.high:g}"
-            rows[f"{case}: {demand.text}"] = interval, one.time[worst], limits, met
+            rows[f"{case}: {demand.text}"] = interval(worst), one.time[worst], limits, met
     heads = "worst (95 % interval)", "at (s)", "limit", "met"
     return Table(rows, heads, (3, 2, 2, 2), corner="demand")
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dopplerlib.workspace.demands import coverage, demand_table
+from dopplerlib.workspace.demands import _MEDIAN, coverage, demand_table
 from dopplerlib.workspace.errors import ErrorSummary
 
 
@@ -50,6 +50,13 @@ def test_a_mean_nees_beyond_its_limits_is_named_with_its_time_and_interval():
     assert list(unmet("C", nees_median=at(5, 9, 5))) == ["C: median NEES, before 0.3 s"]
 
 
+def test_none_of_4000_runs_may_still_be_some_of_all():
+    found = demand_table({case: summary() for case in "ABCD"})
+    interval = found.rows["A: fraction lost, at 1 s"][0]
+    assert interval.low == interval.value == 0
+    assert interval.high == pytest.approx(1 - 0.025 ** (1 / 4000))  # Clopper and Pearson's, by hand
+
+
 def test_errors_axes_and_lost_runs_beyond_their_limits_are_named():
     far = at(49, 0.0121, 0.01)
     assert list(unmet("B", position=far)) == ["B: position over bound, from 0.4 s"]
@@ -78,3 +85,10 @@ def test_what_is_no_comparison_is_refused():
         demand_table({"A": summary()})
     with pytest.raises(ValueError, match="first must be at most 1"):
         coverage(summary(), first=2)
+
+
+def test_the_error_of_a_median_is_that_of_chi_square():
+    from scipy.stats import chi2
+
+    density = chi2.pdf(chi2.median(6), 6)
+    assert _MEDIAN == pytest.approx(1 / (2 * density) / np.sqrt(12), abs=0.005)
