@@ -78,7 +78,9 @@ def complex_step_jacobian(x: ArrayLike, array: RadarArray) -> FloatArray:
     Notes
     -----
     h(x + i e) = h(x) + i e h'(x) - ..., so the imaginary part over e is the derivative; no
-    difference of nearly equal numbers is taken (Squire and Trapp 1998).
+    difference of nearly equal numbers is taken (Squire and Trapp 1998). This holds for h as the
+    library has it, of ``+ - * /`` and roots. An h with ``norm``, ``abs`` or ``conj`` in it gives a
+    wrong derivative without an error.
 
     Examples
     --------
