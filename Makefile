@@ -5,6 +5,7 @@ PYTHON ?= python3
 VENV := .venv
 PY := $(VENV)/bin/python
 BENCH := .venv-bench
+LAB := .venv-lab
 UV := $(shell command -v uv 2>/dev/null || echo .venv-uv/bin/uv)
 
 # A chapter's output must not depend on who executes it: no user profile, no other plotting
@@ -43,6 +44,12 @@ help:  ## show this list
 .PHONY: book
 book: $(VENV)/.ready  ## build the book: book/_build/html/index.html
 	$(PY) -m tools.book
+
+# Nothing is asked of the network: neither news nor newer versions.
+.PHONY: lab
+lab: $(LAB)/.ready  ## open the chapters in JupyterLab, to change and rerun them
+	$(LAB)/bin/jupyter lab --ServerApp.root_dir=book --LabApp.news_url=None \
+		--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate
 
 .PHONY: test
 test: $(VENV)/.ready  ## check everything: style, book without warnings, tests, examples, chapters
@@ -114,15 +121,17 @@ lock: $(if $(filter .venv-uv/%,$(UV)),.venv-uv/.ready)  ## renew all lock files
 	$(UV) pip compile $(LOCK_OPTIONS) requirements.in -o .venv-uv/environment.lock
 	$(UV) pip compile $(LOCK_OPTIONS) -c .venv-uv/environment.lock benchmarks/requirements.in \
 		-o .venv-uv/requirements.lock
+	$(UV) pip compile $(LOCK_OPTIONS) -c .venv-uv/environment.lock .binder/requirements.in \
+		-o .venv-uv/requirements.txt
 	grep -E '^($(TESTED_WITH))==' .venv-uv/environment.lock | tr -d '\\' > .venv-uv/tests.in
 	$(UV) pip compile $(LOCK_OPTIONS) --resolution lowest-direct --all-extras pyproject.toml \
 		.venv-uv/tests.in -o .venv-uv/minimum.lock
 	cd .venv-uv && mv -f environment.lock .. && mv -f requirements.lock ../benchmarks/ && \
-		mv -f minimum.lock ../tests/
+		mv -f requirements.txt ../.binder/ && mv -f minimum.lock ../tests/
 
 .PHONY: clean
 clean:  ## remove everything that the other targets made
-	rm -rf $(VENV) $(BENCH) .venv-uv .venv-matrix book/_build *.egg-info .hypothesis .ruff_cache .mypy_cache
+	rm -rf $(VENV) $(BENCH) $(LAB) .venv-uv .venv-matrix book/_build *.egg-info .hypothesis .ruff_cache .mypy_cache
 	find dopplerlib book data results studies tests tools benchmarks \
 		\( -name __pycache__ -o -name '*.part' -o -name '.partial-*' \) -prune -exec rm -rf {} +
 
@@ -140,6 +149,9 @@ $(VENV)/.ready: FORCE
 
 $(BENCH)/.ready: FORCE
 	$(call environment,$(BENCH),benchmarks/requirements.lock)
+
+$(LAB)/.ready: FORCE
+	$(call environment,$(LAB),.binder/requirements.txt)
 
 .venv-uv/.ready:
 	$(PYTHON) -m venv --clear .venv-uv

@@ -22,11 +22,21 @@ def floors():
     return [need.split(">=") for need in needs]
 
 
-def test_the_benchmarks_run_with_the_versions_of_the_environment():
-    here, there = pinned("environment.lock"), pinned("benchmarks/requirements.lock")
+@pytest.mark.parametrize("lock", ["benchmarks/requirements.lock", ".binder/requirements.txt"])
+def test_benchmarks_and_notebooks_run_with_the_versions_of_the_environment(lock):
+    here, there = pinned("environment.lock"), pinned(lock)
     common = here.keys() & there.keys()
     assert {"numba", "numpy", "scipy"} <= common
     assert {name: here[name] for name in common} == {name: there[name] for name in common}, HINT
+
+
+def test_notebooks_that_are_opened_have_all_that_the_library_may_need():
+    there = pinned(".binder/requirements.txt")
+    assert {name for name, _ in floors()} | {
+        "ipykernel",
+        "jupyterlab",
+        "setuptools",
+    } <= there.keys()
 
 
 @pytest.mark.parametrize(("name", "floor"), floors())
