@@ -6,6 +6,7 @@ the name of the machine's kernel) is removed.
 """
 
 import asyncio
+import base64
 import json
 import os
 import sys
@@ -17,7 +18,7 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
-from dopplerlib._files import file_to_write, write_text
+from dopplerlib._files import file_to_write, replacing, write_text
 from tools.command import parser, start
 from tools.isolation import ONE_THREAD, own_profile
 from tools.prose import as_text, text_path
@@ -32,6 +33,8 @@ METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
     "language_info": {"name": "python", "pygments_lexer": "ipython3"},
 }
+# The picture of the first page, and where README and messages that link to the book find it.
+HERO = ROOT / "book" / "index.ipynb", ROOT / "book" / "_static" / "hero.png"
 TRANSIENT = ("execution", "collapsed", "ExecuteTime")
 
 
@@ -185,11 +188,22 @@ def main(argv=None):
     return int(bad)
 
 
+def first_picture(notebook):
+    """Return the bytes of the first PNG that a notebook holds."""
+    outputs = (output for cell in notebook["cells"] for output in cell.get("outputs", []))
+    found = next(o["data"]["image/png"] for o in outputs if "image/png" in o.get("data", {}))
+    return base64.b64decode("".join(found))
+
+
 def write_beside(path, notebook):
-    """Write the text that stands beside a chapter for review."""
+    """Write the text that stands beside a chapter for review; of the first, its picture too."""
+    notebook = json.loads(notebook)
     text = text_path(path)
     text.parent.mkdir(exist_ok=True)
-    write_text(text, as_text(json.loads(notebook)))
+    write_text(text, as_text(notebook))
+    if path == HERO[0]:
+        with replacing(HERO[1]) as (new,):
+            new.write_bytes(first_picture(notebook))
 
 
 if __name__ == "__main__":
