@@ -24,6 +24,9 @@ import dopplerlib
 
 FENCE = re.compile(r"^```\{reference\} (\S+)(.*)\n```$", re.M)
 SOURCE_ONLY = ("dopplerlib.figures", "dopplerlib.systems")
+BACK = re.compile(
+    r'(class="viewcode-back" href="[^"]*#)dopplerlib\.(?:[a-z_]\w*\.)*(\w+)((?:\.\w+)?")'
+)
 DIRECTIVES = {"class": "autoclass", "exception": "autoexception", "function": "autofunction"}
 
 
@@ -156,10 +159,23 @@ def link_to_source(app, env, node, contnode):
     return nodes.reference("", "", contnode, refuri=f"{place}#:~:text={name}(", internal=True)
 
 
+def lead_back(app, pagename, template, context, doctree):
+    """Aim the links of a page of source at the names by which the reference shows them.
+
+    Sphinx takes the path of the first name of a module for that of all.
+    """
+    if pagename.startswith("_modules/dopplerlib/"):
+        module = pagename.removeprefix("_modules/").replace("/", ".")
+        context["body"] = BACK.sub(
+            lambda m: f"{m[1]}{shown_as(module, m[2])}{m[3]}", context["body"]
+        )
+
+
 def setup(app):
     """Register the extension with Sphinx."""
     app.connect("source-read", write)
     app.connect("env-get-outdated", outdated)
     app.connect("env-updated", add_sources)
     app.connect("missing-reference", link_to_source)
+    app.connect("html-page-context", lead_back)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

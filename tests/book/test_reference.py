@@ -165,3 +165,16 @@ def test_an_entry_without_its_module_cannot():
     assert visible_names(page) == [("function", "b")]
     with pytest.raises(ValueError, match="Empty module name"):
         import_module(visible_names(page)[0][1].rpartition(".")[0])
+
+
+def test_a_page_of_source_leads_back_to_the_names_as_the_reference_shows_them():
+    """Sphinx would take `dopplerlib`, from which one name of the module is shown, for all."""
+    body = '<a class="viewcode-back" href="../../../reference/model.html#dopplerlib.{}">'
+    names = ["state_size", "DopplerLinks.shifts", "model.links.DopplerLinks"]
+    context = {"body": "".join(body.format(name) for name in names)}
+    reference.lead_back(None, "_modules/dopplerlib/model/links", "page.html", context, None)
+    assert re.findall(r"#([\w.]+)", context["body"]) == [
+        "dopplerlib.model.links.state_size",
+        "dopplerlib.DopplerLinks.shifts",
+        "dopplerlib.DopplerLinks",
+    ]

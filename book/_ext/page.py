@@ -1,0 +1,88 @@
+"""What a page has around its text: description and picture for search engines and messages, ids.
+
+Also repairs of what stands below: an id that every exercise has again, heads of columns that are
+empty, roles of the bibliography that no screen reader understands.
+"""
+
+import re
+from html import escape
+from pathlib import Path
+
+from docutils import nodes
+
+PICTURE = "hero.png"  # in `_static`: the first figure of the book, as its notebook has it
+LONGEST = 200  # characters of a description: what a search engine shows
+REPEATED = {"exercise-content", "solution-content"}
+CITE = {
+    "type": "link",
+    "tooltip": "Cite this book",
+    "icon": "fas fa-quote-right",
+    "label": "cite-button",
+}
+EMPTY_HEAD = re.compile(r"<th[^>]*>\s*(?:<p>\s*</p>)?\s*</th>")
+ROLES = re.compile(r' role="(?:list|doc-biblioentry)"(?=[^>]*>)')
+
+
+def description(doctree):
+    """Return the first sentences of a page, as many as a description may have."""
+    for paragraph in doctree.findall(nodes.paragraph):
+        if isinstance(paragraph.parent, nodes.section):
+            text = " ".join(_plain(paragraph).split())
+            whole = re.match(rf".{{1,{LONGEST}}}[.!?](?=\s|$)", text)
+            return whole[0] if whole else text[:LONGEST].rsplit(" ", 1)[0] + " …"
+    return ""
+
+
+def _plain(paragraph):
+    """Return the text of a paragraph; a formula is no text to a search engine."""
+    return "".join(
+        child.astext() for child in paragraph.children if not isinstance(child, nodes.math)
+    )
+
+
+def unique_ids(app, doctree):
+    """Number the ids that sphinx_exercise gives to every exercise of a page."""
+    sections = [s for s in doctree.findall(nodes.section) if REPEATED & set(s["ids"])]
+    for place, section in enumerate(sections, start=1):
+        section["ids"] = [
+            f"{name}-{place}" if name in REPEATED else name for name in section["ids"]
+        ]
+
+
+def describe(app, pagename, template, context, doctree):
+    """Add description, picture and the button that leads to the citation."""
+    base = app.config.html_baseurl
+    path = f"_static/{PICTURE}"
+    picture = f"{base}{path}" if base else context["pathto"](path, 1)
+    about = {
+        "og:title": re.sub("<[^>]*>", "", context.get("title", "")),
+        "og:site_name": app.config.html_title,
+        "og:type": "article",
+        "og:image": picture,
+    }
+    tags = ""
+    if doctree is not None and (text := description(doctree)):
+        about |= {"og:description": text}
+        tags = f'<meta name="description" content="{escape(text)}" />\n'
+    for name, text in about.items():
+        tags += f'<meta property="{name}" content="{escape(text)}" />\n'
+    context["metatags"] = context.get("metatags", "") + tags
+    if "about" in app.env.all_docs:
+        url = context["pathto"]("about") + "#cite"
+        context["header_buttons"].append(CITE | {"url": url})
+    if "body" in context:
+        context["body"] = repaired(context["body"])
+
+
+def repaired(body):
+    """Return a page on which no head of a column is empty, and no list holds what is no item."""
+    body = EMPTY_HEAD.sub("<td></td>", body)
+    return ROLES.sub("", body) if "citation-list" in body else body
+
+
+def setup(app):
+    """Register the extension with Sphinx."""
+    app.config.html_search_scorer = str(Path(__file__).with_name("scorer.js"))
+    app.connect("doctree-read", unique_ids)
+    app.connect("html-page-context", describe, priority=800)  # when the theme has its buttons
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

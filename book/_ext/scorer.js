@@ -1,0 +1,13 @@
+// A chapter before the names of the library, which all contain "doppler"; read by the search page.
+var Scorer = {
+  objNameMatch: 5,
+  objPartialMatch: 0,
+  objPrio: { 0: 0, 1: 0, 2: -5 },
+  objPrioDefault: 0,
+  title: 20,
+  partialTitle: 10,
+  term: 5,
+  partialTerm: 2,
+};
+// Excerpts are fetched from the pages, which a browser refuses for files.
+if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;

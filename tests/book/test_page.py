@@ -1,0 +1,190 @@
+"""What stands around the text of a page, and the links that nobody has to write."""
+
+import importlib.util
+import json
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+import yaml
+from docutils import nodes
+from docutils.utils import new_document
+
+from tools.notebooks import HERO, first_picture
+
+ROOT = Path(__file__).resolve().parents[2]
+BOOK = ROOT / "book"
+STYLE = (BOOK / "_static" / "custom.css").read_text(encoding="utf8")
+# Backgrounds of the theme in light mode: page, stripe of a table, box of an exercise.
+BACKGROUNDS = {"page": "#ffffff", "stripe": "#f3f4f5", "box": "#ecf3ff"}
+
+
+def extension(name):
+    spec = importlib.util.spec_from_file_location(name, BOOK / "_ext" / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+page, words, equations = extension("page"), extension("words"), extension("equations")
+
+
+def paragraph(text):
+    return nodes.paragraph("", text)
+
+
+def section(*children):
+    return nodes.section("", *children)
+
+
+def test_the_picture_of_the_readme_is_the_first_of_the_book():
+    chapter, picture = HERO
+    notebook = json.loads(chapter.read_text(encoding="utf8"))
+    assert picture.read_bytes() == first_picture(notebook)
+    assert picture.relative_to(ROOT).as_posix() in (ROOT / "README.md").read_text(encoding="utf8")
+    assert picture == BOOK / "_static" / page.PICTURE
+
+
+def test_a_description_ends_with_a_sentence_and_has_no_formula():
+    first = paragraph("A radar measures ")
+    first += [nodes.math("", "f"), nodes.Text("shifts. " + "Nothing else. " * 20)]
+    box = nodes.admonition("", paragraph("You will."))
+    text = page.description(section(box, first))
+    assert text.startswith("A radar measures shifts. Nothing else.")
+    assert text.endswith("else.") and len(text) <= page.LONGEST
+    assert page.description(section(paragraph("word " * 80))).endswith("word …")
+    assert page.description(section(box)) == ""
+
+
+def test_ids_of_exercises_become_different_ones():
+    twins = [nodes.section(ids=["exercise-content"]), nodes.section(ids=["exercise-content"])]
+    other = nodes.section(ids=["sec-a"])
+    page.unique_ids(None, nodes.container("", *twins, other))
+    assert [s["ids"][0] for s in (*twins, other)] == [
+        "exercise-content-1",
+        "exercise-content-2",
+        "sec-a",
+    ]
+
+
+def test_a_head_that_is_empty_is_none_and_one_with_text_stays():
+    text = '<tr><th scope="col"></th><th class="head"><p></p></th><th scope="col">a</th></tr>'
+    assert page.repaired(text) == '<tr><td></td><td></td><th scope="col">a</th></tr>'
+    assert 'role="list"' in page.repaired('<div role="list"></div>')
+    assert "role" not in page.repaired('<div role="list" class="citation-list"></div>')
+
+
+def test_the_page_cites_the_book_as_its_citation_file_does():
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf8"))
+    text = (BOOK / "about.md").read_text(encoding="utf8")
+    paper = citation["references"][0]
+    for entry in (citation["title"], citation["version"], paper["title"], paper["doi"]):
+        assert f"{{{entry}}}" in text
+    authors = " and ".join(f"{a['family-names']}, {a['given-names']}" for a in paper["authors"])
+    assert f"{{{authors}}}" in text
+
+
+def glossary():
+    def item(name, text):
+        term = nodes.term("", name, ids=[f"term-{name}"])
+        return nodes.definition_list_item("", term, nodes.definition("", paragraph(text)))
+
+    return nodes.definition_list("", item("NIS", "A square. See."), item("gate", "A limit: far."))
+
+
+def linked(*children):
+    tree = section(*children)
+    words.link_terms(tree, words.definitions(glossary()), "glossary.html")
+    return [
+        (link.astext(), link["refuri"], link["reftitle"]) for link in tree.findall(nodes.reference)
+    ]
+
+
+def test_the_first_appearance_of_a_term_leads_to_its_definition():
+    text = paragraph("The gates and the gate of the NIS, no NISX, no sub-gate.")
+    assert linked(text, paragraph("A gate.")) == [
+        ("gate", "glossary.html#term-gate", "A limit"),
+        ("NIS", "glossary.html#term-NIS", "A square."),
+    ]
+    assert text.astext() == "The gates and the gate of the NIS, no NISX, no sub-gate."
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        nodes.title("", "A gate"),
+        nodes.admonition("", paragraph("A gate")),
+        nodes.paragraph("", "", nodes.reference("", "gate", refuri="a")),
+        nodes.paragraph("", "", nodes.literal("", "gate")),
+        paragraph("investigated, nis"),
+    ],
+)
+def test_titles_boxes_links_and_code_have_no_such_link(node):
+    tree = section(node)
+    words.link_terms(tree, words.definitions(glossary()), "glossary.html")
+    assert [r for r in tree.findall(nodes.reference) if "term" in r["classes"]] == []
+
+
+def entry(kind, aliased=False):
+    return SimpleNamespace(docname="reference/a", node_id="id", objtype=kind, aliased=aliased)
+
+
+def test_names_that_are_public_and_unique_lead_to_the_reference():
+    objects = {
+        "d.ekf": entry("function"),
+        "d.a.nis": entry("function"),
+        "d.b.nis": entry("function"),
+        "d.Track.x": entry("attribute"),
+    }
+    names = words.public(objects)
+    assert names == {"ekf": ("reference/a", "id")}
+    code = [nodes.literal("", text) for text in ("ekf", "ekf()", "nis", "x")]
+    tree = section(
+        nodes.paragraph("", "", *code), section(nodes.paragraph("", "", code[0].deepcopy()))
+    )
+    words.link_names(tree, names, lambda docname: f"{docname}.html")
+    assert [r["refuri"] for r in tree.findall(nodes.reference)] == ["reference/a.html#id"] * 2
+
+
+def test_every_formula_that_is_written_has_a_number_and_an_anchor():
+    noted = []
+    domain = SimpleNamespace(
+        note_equation=lambda docname, label, location: noted.append(label),
+        get_equation_number_for=noted.index,
+    )
+    document = new_document("a")
+    document.settings.env = SimpleNamespace(
+        docname="ekf", doc2path=lambda name: f"{name}.ipynb", get_domain=lambda name: domain
+    )
+    labeled = nodes.math_block("", "a", label="eq-a")
+    printed = nodes.container("", nodes.math_block("", "b"), nb_element="cell_code_output")
+    document += section(labeled, printed, nodes.math_block("", "c"))
+    equations.NumberFormulas(document).apply()
+    assert noted == ["ekf-2"]
+    (target,) = document.findall(nodes.target)
+    assert target["ids"] == ["equation-ekf-2"]
+    assert target.next_node(siblings=True)["label"] == "ekf-2"
+
+
+def luminance(color):
+    parts = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(a, b):
+    low, high = sorted([luminance(a), luminance(b)])
+    return (high + 0.05) / (low + 0.05)
+
+
+def test_contrast_is_that_of_wcag():
+    assert contrast("#000000", "#ffffff") == pytest.approx(21)
+    assert contrast("#777777", "#ffffff") == pytest.approx(4.48, abs=0.005)
+
+
+@pytest.mark.parametrize("background", BACKGROUNDS)
+def test_colored_words_have_the_contrast_that_wcag_asks_of_text(background):
+    colors = re.findall(r"--pst-color-(?:success|warning|danger|link): (#\w{6})", STYLE)
+    assert len(colors) == 4
+    assert min(contrast(color, BACKGROUNDS[background]) for color in colors) >= 4.5
