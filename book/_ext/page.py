@@ -68,7 +68,7 @@ def describe(app, pagename, template, context, doctree):
         tags += f'<meta property="{name}" content="{escape(text)}" />\n'
     context["metatags"] = context.get("metatags", "") + tags
     if "about" in app.env.all_docs:
-        url = context["pathto"]("about") + "#cite"
+        url = context["pathto"]("about").rstrip("#") + "#cite"
         context["header_buttons"].append(CITE | {"url": url})
     if "body" in context:
         context["body"] = repaired(context["body"])

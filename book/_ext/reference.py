@@ -166,9 +166,13 @@ def lead_back(app, pagename, template, context, doctree):
     """
     if pagename.startswith("_modules/dopplerlib/"):
         module = pagename.removeprefix("_modules/").replace("/", ".")
-        context["body"] = BACK.sub(
-            lambda m: f"{m[1]}{shown_as(module, m[2])}{m[3]}", context["body"]
-        )
+        objects = app.env.get_domain("py").objects
+
+        def aimed(match):
+            name = shown_as(module, match[2])
+            return f"{match[1]}{name}{match[3]}" if name in objects else match[0]
+
+        context["body"] = BACK.sub(aimed, context["body"])
 
 
 def setup(app):

@@ -34,7 +34,7 @@ def pattern(terms):
     """Return the expression that finds any of the terms, the longest first, plurals too."""
     words = sorted((term for term in terms if term not in EVERYDAY), key=len, reverse=True)
     alternatives = "|".join(re.escape(word).replace(r"\ ", r"\s+") for word in words)
-    return re.compile(rf"(?<![\w-])({alternatives})(?=s?(?![\w-]))", re.IGNORECASE)
+    return re.compile(rf"(?<![\w-])({alternatives})s?(?![\w-])", re.IGNORECASE)
 
 
 def link_terms(doctree, found, uri):
@@ -51,7 +51,7 @@ def link_terms(doctree, found, uri):
                 continue
             done.add(term)
             target, title = found[term]
-            link = nodes.reference("", match[1], refuri=f"{uri}#{target}", internal=True)
+            link = nodes.reference("", match[0], refuri=f"{uri}#{target}", internal=True)
             link["reftitle"] = title
             link["classes"] += ["term"]
             pieces += [nodes.Text(text[end : match.start()]), link]

@@ -1,12 +1,12 @@
-// Figures open at their full size: a click, Enter, or without this script the address of the file.
+// Figures open at their full size: a click, or Enter; without this script, the address of the file.
 addEventListener("DOMContentLoaded", () => {
   const box = document.createElement("dialog");
   box.className = "zoom";
   box.setAttribute("aria-label", "Figure at full size");
-  box.innerHTML = '<form method="dialog"><button aria-label="Close">×</button></form>';
-  const large = box.appendChild(new Image());
+  box.innerHTML = '<form method="dialog"><button aria-label="Close">×</button></form><img alt="">';
   box.addEventListener("click", (event) => event.target === box && box.close());
   document.body.append(box);
+  const large = box.querySelector("img");
   for (const image of document.querySelectorAll(".bd-article figure img")) {
     const link = image.closest("a") || document.createElement("a");
     if (!link.isConnected) {
@@ -24,4 +24,19 @@ addEventListener("DOMContentLoaded", () => {
       box.showModal();
     });
   }
+  // The theme names these buttons otherwise than they read, or not at all.
+  document.querySelector(".search-button-field")?.removeAttribute("aria-label");
+  for (const icon of document.querySelectorAll(".theme-switch-button *")) icon.ariaHidden = "true";
+  for (const fold of document.querySelectorAll(".bd-sidebar-primary summary")) {
+    fold.ariaLabel = `Pages of ${fold.closest("li").querySelector("a").textContent}`;
+  }
 });
+
+// A formula that is wider than the page can be reached by the keyboard, and scrolled.
+addEventListener("load", () =>
+  window.MathJax?.startup?.promise?.then(() => {
+    for (const box of document.querySelectorAll("mjx-container, .bd-content div.math")) {
+      if (box.scrollWidth > box.clientWidth && box.clientWidth) box.tabIndex = 0;
+    }
+  }),
+);

@@ -104,7 +104,7 @@ def linked(*children):
 def test_the_first_appearance_of_a_term_leads_to_its_definition():
     text = paragraph("The gates and the gate of the NIS, no NISX, no sub-gate.")
     assert linked(text, paragraph("A gate.")) == [
-        ("gate", "glossary.html#term-gate", "A limit"),
+        ("gates", "glossary.html#term-gate", "A limit"),
         ("NIS", "glossary.html#term-NIS", "A square."),
     ]
     assert text.astext() == "The gates and the gate of the NIS, no NISX, no sub-gate."

@@ -6,6 +6,7 @@ import re
 import sys
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -172,7 +173,10 @@ def test_a_page_of_source_leads_back_to_the_names_as_the_reference_shows_them():
     body = '<a class="viewcode-back" href="../../../reference/model.html#dopplerlib.{}">'
     names = ["state_size", "DopplerLinks.shifts", "model.links.DopplerLinks"]
     context = {"body": "".join(body.format(name) for name in names)}
-    reference.lead_back(None, "_modules/dopplerlib/model/links", "page.html", context, None)
+    shown = ["dopplerlib.model.links.state_size", "dopplerlib.DopplerLinks"]
+    env = SimpleNamespace(get_domain=lambda name: SimpleNamespace(objects=shown))
+    app = SimpleNamespace(env=env)
+    reference.lead_back(app, "_modules/dopplerlib/model/links", "page.html", context, None)
     assert re.findall(r"#([\w.]+)", context["body"]) == [
         "dopplerlib.model.links.state_size",
         "dopplerlib.DopplerLinks.shifts",
