@@ -169,8 +169,9 @@ def lead_back(app, pagename, template, context, doctree):
         objects = app.env.get_domain("py").objects
 
         def aimed(match):
-            name = shown_as(module, match[2])
-            return f"{match[1]}{name}{match[3]}" if name in objects else match[0]
+            own = shown_as(module, match[2])
+            handed_on = (name for name in objects if name.endswith(f".{match[2]}"))
+            return f"{match[1]}{own if own in objects else next(handed_on, own)}{match[3]}"
 
         context["body"] = BACK.sub(aimed, context["body"])
 

@@ -24,9 +24,11 @@ addEventListener("DOMContentLoaded", () => {
       box.showModal();
     });
   }
-  // The theme names these buttons otherwise than they read, or not at all.
-  document.querySelector(".search-button-field")?.removeAttribute("aria-label");
-  for (const icon of document.querySelectorAll(".theme-switch-button *")) icon.ariaHidden = "true";
+  // The theme names these otherwise than they read, or not at all.
+  for (const button of document.querySelectorAll(".search-button-field, .theme-switch-button")) {
+    button.title ||= button.ariaLabel;
+    button.removeAttribute("aria-label");
+  }
   for (const fold of document.querySelectorAll(".bd-sidebar-primary summary")) {
     fold.ariaLabel = `Pages of ${fold.closest("li").querySelector("a").textContent}`;
   }

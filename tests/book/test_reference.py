@@ -173,7 +173,7 @@ def test_a_page_of_source_leads_back_to_the_names_as_the_reference_shows_them():
     body = '<a class="viewcode-back" href="../../../reference/model.html#dopplerlib.{}">'
     names = ["state_size", "DopplerLinks.shifts", "model.links.DopplerLinks"]
     context = {"body": "".join(body.format(name) for name in names)}
-    shown = ["dopplerlib.model.links.state_size", "dopplerlib.DopplerLinks"]
+    shown = ["dopplerlib.model.links.state_size", "dopplerlib.DopplerLinks", "dopplerlib.read_npy"]
     env = SimpleNamespace(get_domain=lambda name: SimpleNamespace(objects=shown))
     app = SimpleNamespace(env=env)
     reference.lead_back(app, "_modules/dopplerlib/model/links", "page.html", context, None)
@@ -182,3 +182,6 @@ def test_a_page_of_source_leads_back_to_the_names_as_the_reference_shows_them():
         "dopplerlib.DopplerLinks.shifts",
         "dopplerlib.DopplerLinks",
     ]
+    context = {"body": body.format("signal._npy.read_npy")}
+    reference.lead_back(app, "_modules/dopplerlib/signal/_npy", "page.html", context, None)
+    assert "#dopplerlib.read_npy" in context["body"]
