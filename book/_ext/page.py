@@ -20,6 +20,9 @@ CITE = {
     "label": "cite-button",
 }
 EMPTY_HEAD = re.compile(r"<th[^>]*>\s*(?:<p>\s*</p>)?\s*</th>")
+CELL = re.compile(r"(?<=<td>)[^<]+(?=</td>)")  # of a table that a cell prints
+HYPHEN = re.compile(r"(?<![^\s(])-(?=\d)")
+PROSE = (nodes.paragraph, nodes.caption, nodes.emphasis, nodes.strong)
 ROLES = re.compile(r' role="(?:list|doc-biblioentry)"(?=[^>]*>)')
 
 
@@ -49,6 +52,13 @@ def unique_ids(app, doctree):
         ]
 
 
+def true_minus(app, doctree):
+    """Print a hyphen before a number as the minus that it is meant to be; code keeps it."""
+    for text in list(doctree.findall(nodes.Text)):
+        if isinstance(text.parent, PROSE) and HYPHEN.search(text):
+            text.parent.replace(text, nodes.Text(HYPHEN.sub("\u2212", text)))
+
+
 def describe(app, pagename, template, context, doctree):
     """Add description, picture and the button that leads to the citation."""
     base = app.config.html_baseurl
@@ -75,8 +85,9 @@ def describe(app, pagename, template, context, doctree):
 
 
 def repaired(body):
-    """Return a page on which no head of a column is empty, and no list holds what is no item."""
+    """Return a page whose tables have no empty heads, and minuses; whose lists hold items."""
     body = EMPTY_HEAD.sub("<td></td>", body)
+    body = CELL.sub(lambda m: HYPHEN.sub("\u2212", m[0]), body)
     return ROLES.sub("", body) if "citation-list" in body else body
 
 
@@ -84,5 +95,6 @@ def setup(app):
     """Register the extension with Sphinx."""
     app.config.html_search_scorer = str(Path(__file__).with_name("scorer.js"))
     app.connect("doctree-read", unique_ids)
+    app.connect("doctree-read", true_minus)
     app.connect("html-page-context", describe, priority=800)  # when the theme has its buttons
     return {"parallel_read_safe": True, "parallel_write_safe": True}

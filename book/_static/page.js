@@ -42,3 +42,44 @@ addEventListener("load", () =>
     }
   }),
 );
+
+// A scorecard: the number of each verdict, buttons that leave rows out, and what was tried folded.
+addEventListener("DOMContentLoaded", () => {
+  for (const table of document.querySelectorAll(".bd-article table:has(td:first-child .verdict)")) {
+    const heads = [...table.tHead.rows[0].cells].map((head) => head.textContent);
+    const rows = new Map();
+    for (const row of table.tBodies[0].rows) {
+      const word = row.querySelector(".verdict")?.textContent;
+      if (word) rows.set(word, [...(rows.get(word) ?? []), row]);
+      for (const cell of [...row.cells].slice(1)) cell.dataset.head = heads[cell.cellIndex];
+    }
+    if (rows.size < 2 || table.tBodies[0].rows.length < 10) continue;
+    const bar = document.createElement("div");
+    bar.className = "verdict-bar d-print-none";
+    bar.append("Show: ");
+    for (const [word, those] of rows) {
+      const button = document.createElement("button");
+      button.textContent = `${those.length} ${word}`;
+      button.className = `verdict verdict-${word}`;
+      button.ariaPressed = "true";
+      button.addEventListener("click", () => {
+        const shown = button.ariaPressed !== "true";
+        button.ariaPressed = String(shown);
+        for (const row of those) row.hidden = !shown;
+      });
+      bar.append(button);
+    }
+    (table.closest(".pst-scrollable-table-container") ?? table).before(bar);
+    for (const cell of table.querySelectorAll("tbody td:nth-child(3)")) {
+      const breaks = cell.querySelectorAll("br");
+      if (breaks.length < 3) continue;
+      const fold = document.createElement("details");
+      fold.innerHTML = "<summary>over all choices</summary>";
+      while (breaks[1].nextSibling) fold.append(breaks[1].nextSibling);
+      breaks[1].replaceWith(fold);
+    }
+  }
+});
+addEventListener("beforeprint", () => {
+  for (const fold of document.querySelectorAll("td details")) fold.open = true;
+});

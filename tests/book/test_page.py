@@ -75,6 +75,16 @@ def test_a_head_that_is_empty_is_none_and_one_with_text_stays():
     assert "role" not in page.repaired('<div role="list" class="citation-list"></div>')
 
 
+def test_a_hyphen_before_a_number_is_printed_as_a_minus_but_not_in_code():
+    tree = section(paragraph("at -4 dB (-5), 3-4, x-1"))
+    tree += nodes.paragraph("", "", nodes.literal("", "a -4"), nodes.emphasis("", "-2 m"))
+    page.true_minus(None, tree)
+    assert tree[0].astext() == "at \u22124 dB (\u22125), 3-4, x-1"
+    assert tree[1].astext() == "a -4\u22122 m"
+    table = "<td>-1 (-2 to 3-4)</td><td><code>-1</code></td>"
+    assert page.repaired(table) == "<td>\u22121 (\u22122 to 3-4)</td><td><code>-1</code></td>"
+
+
 def test_the_page_cites_the_book_as_its_citation_file_does():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf8"))
     text = (BOOK / "about.md").read_text(encoding="utf8")
