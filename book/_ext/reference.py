@@ -146,6 +146,18 @@ def add_sources(app, env):
             env._viewcode_modules[module] = (analyzer.code, analyzer.tags, {}, module)
 
 
+def drop_outdated_sources(app):
+    """Remove the pages of source that are older than what divides the reference into pages.
+
+    Sphinx writes them again only if their module is newer; their links back would go astray.
+    """
+    rules = [Path(__file__), *Path(app.srcdir, "reference").iterdir()]
+    newest = max(path.stat().st_mtime for path in rules)
+    for page in Path(app.outdir, "_modules").rglob("*.html"):
+        if page.stat().st_mtime < newest:
+            page.unlink()
+
+
 def link_to_source(app, env, node, contnode):
     """Resolve a reference to a function that no page shows: its line in the source."""
     target = node.get("reftarget", "")
@@ -167,17 +179,19 @@ def lead_back(app, pagename, template, context, doctree):
     if pagename.startswith("_modules/dopplerlib/"):
         module = pagename.removeprefix("_modules/").replace("/", ".")
         objects = app.env.get_domain("py").objects
+        shown = [name for name, entry in objects.items() if not entry.aliased]
 
         def aimed(match):
             own = shown_as(module, match[2])
-            handed_on = (name for name in objects if name.endswith(f".{match[2]}"))
-            return f"{match[1]}{own if own in objects else next(handed_on, own)}{match[3]}"
+            handed_on = (name for name in shown if name.endswith(f".{match[2]}"))
+            return f"{match[1]}{own if own in shown else next(handed_on, own)}{match[3]}"
 
         context["body"] = BACK.sub(aimed, context["body"])
 
 
 def setup(app):
     """Register the extension with Sphinx."""
+    app.connect("builder-inited", drop_outdated_sources)
     app.connect("source-read", write)
     app.connect("env-get-outdated", outdated)
     app.connect("env-updated", add_sources)

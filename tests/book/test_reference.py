@@ -2,6 +2,7 @@
 
 import ast
 import html
+import os
 import re
 import sys
 from importlib import import_module
@@ -173,8 +174,9 @@ def test_a_page_of_source_leads_back_to_the_names_as_the_reference_shows_them():
     body = '<a class="viewcode-back" href="../../../reference/model.html#dopplerlib.{}">'
     names = ["state_size", "DopplerLinks.shifts", "model.links.DopplerLinks"]
     context = {"body": "".join(body.format(name) for name in names)}
-    shown = ["dopplerlib.model.links.state_size", "dopplerlib.DopplerLinks", "dopplerlib.read_npy"]
-    env = SimpleNamespace(get_domain=lambda name: SimpleNamespace(objects=shown))
+    shown = ["model.links.state_size", "DopplerLinks", "signal._npy.read_npy", "read_npy"]
+    objects = {f"dopplerlib.{name}": SimpleNamespace(aliased="._" in name) for name in shown}
+    env = SimpleNamespace(get_domain=lambda name: SimpleNamespace(objects=objects))
     app = SimpleNamespace(env=env)
     reference.lead_back(app, "_modules/dopplerlib/model/links", "page.html", context, None)
     assert re.findall(r"#([\w.]+)", context["body"]) == [
@@ -185,3 +187,16 @@ def test_a_page_of_source_leads_back_to_the_names_as_the_reference_shows_them():
     context = {"body": body.format("signal._npy.read_npy")}
     reference.lead_back(app, "_modules/dopplerlib/signal/_npy", "page.html", context, None)
     assert "#dopplerlib.read_npy" in context["body"]
+
+
+def test_pages_of_source_that_are_older_than_the_reference_are_made_again(tmp_path):
+    for name in ("reference", "html/_modules"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "reference" / "a.md").touch()
+    old, new = (tmp_path / "html" / "_modules" / f"{name}.html" for name in ("old", "new"))
+    for page in (old, new):
+        page.touch()
+    os.utime(old, (0, 0))
+    os.utime(new, (4e9, 4e9))
+    reference.drop_outdated_sources(SimpleNamespace(srcdir=tmp_path, outdir=tmp_path / "html"))
+    assert not old.exists() and new.exists()
