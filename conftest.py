@@ -1,8 +1,14 @@
 """Tests run by hand as by `make`: on one thread, with nothing from a home, and without one."""
 
+import json
 import os
+import sys
 from contextlib import ExitStack
+from importlib.metadata import EntryPoint
 from pathlib import Path
+
+from ipykernel.kernelspec import get_kernel_dict
+from jupyter_client.provisioning import KernelProvisionerFactory
 
 from tools.isolation import ONE_THREAD, own_profile
 
@@ -14,6 +20,15 @@ PREPARED.enter_context(own_profile())
 SETTINGS = Path(os.environ["IPYTHONDIR"]) / "profile_default" / "ipython_config.py"
 SETTINGS.parent.mkdir()
 SETTINGS.write_text("c.InlineBackend.print_figure_kwargs = {'bbox_inches': None, 'dpi': 80}\n")
+# Their kernels are copies of one process, where processes can be copied.
+SPEC = Path(os.environ["JUPYTER_DATA_DIR"]) / "kernels" / "copied" / "kernel.json"
+SPEC.parent.mkdir(parents=True)
+copied = {"kernel_provisioner": {"provisioner_name": "copied"}} if sys.platform == "linux" else {}
+spec = get_kernel_dict() | {"metadata": copied}
+SPEC.write_text(json.dumps(spec))
+KernelProvisionerFactory.instance().provisioners["copied"] = EntryPoint(
+    "copied", "tools.copied_kernel:Provisioner", KernelProvisionerFactory.GROUP_NAME
+)
 os.environ.update(ONE_THREAD)
 
 
