@@ -103,7 +103,7 @@ record: $(VENV)/.ready  ## compare every byte of the chapters, judge all claims 
 	$(PY) -m tools.record $(NAME)
 
 .PHONY: kernels
-kernels: $(VENV)/.ready  ## derive the formulas and print the numerical kernels
+kernels: $(VENV)/.ready  ## derive the formulas, print the numerical kernels and C99 for firmware
 	$(PY) -m tools.kernels
 
 # NAME=noise_sweep runs that one; what it computes and costs: python -m studies NAME --help.

@@ -12,7 +12,8 @@ from sympy.printing.pycode import PythonCodePrinter
 _NODES = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow)
 _EXACT_INTEGER = 2**53  # up to here a double holds every integer
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")  # what every language takes
-_USED = {"sqrt", "Math", "out", "lanes", "lane"}  # what the printed text itself is made of
+# What the printed text itself is made of.
+_USED = {"sqrt", "Math", "out", "lanes", "lane", "doppler_real", "DOPPLER_SQRT"}
 
 
 class _Exact:
@@ -89,6 +90,18 @@ class Python(_Exact, PythonCodePrinter):
 
 class C99(_Exact, C99CodePrinter):
     square_root = "sqrt"
+
+
+class C99Real(C99):
+    """C99 for numbers of the type doppler_real: no constant of another type may widen them."""
+
+    square_root = "DOPPLER_SQRT"
+
+    def _print_Float(self, expression):
+        return f"(doppler_real){super()._print_Float(expression)}"
+
+    def _print_Rational(self, expression):
+        return f"({self._number(expression, '(doppler_real){0.p}/(doppler_real){0.q}'.format)})"
 
 
 class JavaScript(_Exact, JavascriptCodePrinter):

@@ -10,7 +10,7 @@ import sympy as sp
 
 from .._hints import Index, checked
 from ._arguments import Name
-from ._exact import C99, JavaScript, Python
+from ._exact import C99, C99Real, JavaScript, Python
 from .block import Block
 
 WIDTH = 79  # what a page of the book shows without a scroll bar
@@ -82,18 +82,7 @@ def python_lanes(block: Block, places: dict[Name, tuple[str, Index]]) -> str:
     [2, 8]
     """
     printer = Python()
-    for symbol in block.outputs:
-        if symbol not in places:
-            raise ValueError(f"places must hold every output of the block, got none for {symbol}")
-    names = block.names()
-    for array, _ in places.values():
-        if not printer.takes(array) or array in names:
-            raise ValueError(
-                f"places must name arrays by identifiers that nothing else has, got {array!r}"
-            )
-    inputs = [symbol for symbol in block.inputs if symbol in places]
-    arguments = [symbol for symbol in block.inputs if symbol not in places]
-    arrays = dict.fromkeys(places[symbol][0] for symbol in (*inputs, *block.outputs))
+    inputs, arguments, arrays = _placed(block, places, printer)
     body = [
         *_docstring(block),
         *(f"{printer.doprint(symbol)} = {_place(*places[symbol])}" for symbol in inputs),
@@ -133,6 +122,55 @@ def c99_function(block: Block) -> str:
     arguments = [f"double {name}" for name in _names(block.inputs, printer)]
     head = f"void {printer.name(block.name)}({', '.join([*arguments, 'double *out'])})"
     return "#include <math.h>\n\n" + _wrapped(head) + "\n{\n" + _indented(body) + "\n}\n"
+
+
+@checked
+def c99_in_place(block: Block, places: dict[Name, tuple[str, Index]]) -> str:
+    """Return `block` as a static C99 function on arrays, in double or single precision.
+
+    The text that it becomes part of says what `doppler_real` is, and the square root
+    `DOPPLER_SQRT`.
+
+    Parameters
+    ----------
+    block : Block
+        As by `python_lanes`.
+    places : dict
+        Name of the array and index of each symbol that lives in an array.
+
+    Raises
+    ------
+    ValueError
+        As by `python_lanes`.
+
+    Examples
+    --------
+    >>> from dopplerlib.derive.block import Stage
+    >>> x, cube = sp.symbols("x cube")
+    >>> block = Block("power", "A cube.", (x,), (Stage("third", [(cube, x**3)]),), (cube,))
+    >>> print(c99_in_place(block, {cube: ("work", 1)}))
+    /* A cube. */
+    static void power(doppler_real *work, doppler_real x)
+    {
+        /* third */
+        const doppler_real cube = x*x*x;
+        work[1] = cube;
+    }
+    <BLANKLINE>
+    """
+    printer = C99Real()
+    inputs, arguments, arrays = _placed(block, places, printer)
+    written = {places[symbol][0] for symbol in block.outputs}
+    body = [f"const doppler_real {printer.doprint(s)} = {_element(*places[s])};" for s in inputs]
+    for comment, assignments in block.straight_line():
+        body.append(_remark(comment))
+        for name, value in assignments:
+            body.append(f"const doppler_real {printer.doprint(name)} = {printer.doprint(value)};")
+    body += [f"{_element(*places[s])} = {printer.doprint(s)};" for s in block.outputs]
+    head = [f"{'' if name in written else 'const '}doppler_real *{name}" for name in arrays]
+    head += [f"doppler_real {name}" for name in _names(arguments, printer)]
+    declared = _wrapped(f"static void {printer.name(block.name)}({', '.join(head)})")
+    return f"{_remark(block.summary)}\n{declared}\n{{\n{_indented(body)}\n}}\n"
 
 
 @checked
@@ -186,6 +224,30 @@ def _commented(block, printer):
         yield f"# {comment}"
         for name, value in assignments:
             yield f"{printer.doprint(name)} = {printer.doprint(value)}"
+
+
+def _placed(block, places, printer):
+    """Return the inputs that live in arrays, those that are arguments, and the arrays' names."""
+    for symbol in block.outputs:
+        if symbol not in places:
+            raise ValueError(f"places must hold every output of the block, got none for {symbol}")
+    names = block.names()
+    for array, _ in places.values():
+        if not printer.takes(array) or array in names:
+            raise ValueError(
+                f"places must name arrays by identifiers that nothing else has, got {array!r}"
+            )
+    inputs = [symbol for symbol in block.inputs if symbol in places]
+    arguments = [symbol for symbol in block.inputs if symbol not in places]
+    return inputs, arguments, dict.fromkeys(places[s][0] for s in (*inputs, *block.outputs))
+
+
+def _remark(text):
+    return f"/* {text.replace('*/', '* /')} */"
+
+
+def _element(array, index):
+    return f"{array}[{index}]"
 
 
 def _place(array, row):

@@ -10,6 +10,7 @@ import sympy as sp
 from dopplerlib.derive.block import Block, Stage
 from dopplerlib.derive.printers import (
     c99_function,
+    c99_in_place,
     javascript_function,
     python_function,
     python_lanes,
@@ -151,11 +152,27 @@ def test_a_summary_that_would_end_the_docstring_is_refused(summary):
 
 
 @pytest.mark.parametrize(
-    "places", [{}, {OUT: ("lambda", 0)}, {OUT: ("a", 0)}, {OUT: ("work", -1)}, {"out_": ("w", 0)}]
+    "places", [{}, {OUT: ("while", 0)}, {OUT: ("a", 0)}, {OUT: ("work", -1)}, {"out_": ("w", 0)}]
 )
-def test_places_that_do_not_fit_are_refused(places):
+@pytest.mark.parametrize("function", [python_lanes, c99_in_place])
+def test_places_that_do_not_fit_are_refused(function, places):
     with pytest.raises(ValueError, match=r"^places.* must"):
-        python_lanes(block(a), places)
+        function(block(a), places)
+
+
+def test_no_number_has_a_type_of_its_own_where_the_precision_is_open():
+    expression = a / 3 + sp.Float(0.1) * b + 1 / sp.sqrt(c)
+    text = c99_in_place(block(expression), {OUT: ("work", 0), a: ("read", 2)})
+    assert "static void f(const doppler_real *read, doppler_real *work, doppler_real b," in text
+    assert "const doppler_real a = read[2];" in text and "work[0] = out_;" in text
+    assert "((doppler_real)1/(doppler_real)3)*a" in text and "(doppler_real)0.1*b" in text
+    assert "1/DOPPLER_SQRT(c)" in text and "double" not in text
+
+
+def test_a_remark_does_not_end_a_comment():
+    odd = Block("f", "P */ x", (a,), (Stage("*/", [(OUT, a)]),), (OUT,))
+    text = c99_in_place(odd, {OUT: ("work", 0)})
+    assert text.count("*/") == text.count("/*") == 2
 
 
 def test_lanes_are_neither_mixed_up_nor_touched():

@@ -23,7 +23,8 @@ NAMED = {
 }
 SUFFIXES = {"", ".in", ".md", ".py", ".toml", ".yaml", ".yml"}  # chapters are texts, too
 FOLDERS = (
-    ".ci .github benchmarks book data decisions dopplerlib results studies tests tools".split()
+    ".ci .github benchmarks book data decisions dopplerlib firmware results studies tests "
+    "tools".split()
 )
 # A command stands in code, `make` or ``make``, or is a line of a script.
 COMMAND = re.compile(
