@@ -70,7 +70,7 @@ static void predict(doppler_real *state, doppler_real *factors, doppler_real T)
 static void gains(doppler_real *gain, doppler_real T, doppler_real sigma_a)
 {
     /* half the square of T */
-    const doppler_real half = (((doppler_real)1/(doppler_real)2))*(T*T);
+    const doppler_real half = ((doppler_real)1/(doppler_real)2)*(T*T);
     /* gains */
     const doppler_real g_p = half*sigma_a;
     const doppler_real g_v = T*sigma_a;

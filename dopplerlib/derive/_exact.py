@@ -101,7 +101,7 @@ class C99Real(C99):
         return f"(doppler_real){super()._print_Float(expression)}"
 
     def _print_Rational(self, expression):
-        return f"({self._number(expression, '(doppler_real){0.p}/(doppler_real){0.q}'.format)})"
+        return self._number(expression, "(doppler_real){0.p}/(doppler_real){0.q}".format)
 
 
 class JavaScript(_Exact, JavascriptCodePrinter):
