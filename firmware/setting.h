@@ -1,6 +1,6 @@
 /* Setting of main.c: Fig 6 of Mittermaier et al. (2016), with an alarm of ours.
  *
- * Printed by `make kernels`. Do not edit: change tools/kernels.py.
+ * Printed by tools/kernels.py: change it there, or in a copy of your own.
  */
 #define SENSORS 6
 #define INTERVAL 0.001 /* before the first sample, in s */
@@ -21,21 +21,11 @@ static const doppler_real VARIANCE[] = {
     R(0.16000000000000003), R(0.16000000000000003), R(0.16000000000000003),
     R(0.16000000000000003), R(0.16000000000000003), R(0.16000000000000003)
 };
-/* of the gate, two-sided, for 0 to 6 sensors */
-static const doppler_real LOWER[] = {
-    R(-3.4028234663852886e+38), R(0.0009820691171752583),
-    R(0.050635615968579795), R(0.21579528262389797), R(0.48441855708793014),
-    R(0.831211613486663), R(1.237344245791203)
-};
-static const doppler_real UPPER[] = {
-    R(3.4028234663852886e+38), R(5.023886187314888), R(7.377758908227871),
-    R(9.348403604496148), R(11.143286781877796), R(12.832501994030027),
-    R(14.44937533544792)
-};
 /* state one interval before the first sample */
 static const doppler_real START[] = {
     R(0.767757), R(0.086113), R(0.124076), R(-0.757), R(-0.113), R(-0.076)
 };
+/* its covariance */
 static const doppler_real START_COVARIANCE[] = {
     R(0.1), R(0.0), R(0.0), R(0.0), R(0.0), R(0.0),
     R(0.0), R(0.1), R(0.0), R(0.0), R(0.0), R(0.0),
@@ -43,6 +33,18 @@ static const doppler_real START_COVARIANCE[] = {
     R(0.0), R(0.0), R(0.0), R(0.1), R(0.0), R(0.0),
     R(0.0), R(0.0), R(0.0), R(0.0), R(0.1), R(0.0),
     R(0.0), R(0.0), R(0.0), R(0.0), R(0.0), R(0.1)
+};
+/* of the gate, two-sided, for 0 to 6 sensors */
+static const doppler_real LOWER[] = {
+    R(-3.4028234663852886e+38), R(0.0009820691171752583),
+    R(0.050635615968579795), R(0.21579528262389797), R(0.48441855708793014),
+    R(0.831211613486663), R(1.237344245791203)
+};
+/* and above */
+static const doppler_real UPPER[] = {
+    R(3.4028234663852886e+38), R(5.023886187314888), R(7.377758908227871),
+    R(9.348403604496148), R(11.143286781877796), R(12.832501994030027),
+    R(14.44937533544792)
 };
 
 static const doppler_setting SETTING = {

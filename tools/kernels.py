@@ -22,7 +22,7 @@ _NOISE = {
 _SETTING = """\
 /* Setting of main.c: {title}.
  *
- * Printed by `make kernels`. Do not edit: change tools/kernels.py.
+ * Printed by tools/kernels.py: change it there, or in a copy of your own.
  */
 #define SENSORS {sensors}
 #define INTERVAL {interval} /* before the first sample, in s */
@@ -35,7 +35,7 @@ static const doppler_setting SETTING = {{
     R({doppler_per_speed}), /* 2 / wavelength */
     R({sigma_a}), /* sigma_a */
     {noise},
-    LOWER, UPPER,
+    {bounds},
     {point}, /* the point that the target must not come near */
     R({distance}), /* nearer than that, in m */
     R({quantile}) /* with a probability of {probability} */
@@ -53,26 +53,27 @@ def firmware_setting(
     gate, noise: See `ekf`.
     """
     n = len(scenario.array)
-    lower, upper = gate_bounds(gate, n)
-    largest = np.finfo(np.float32).max  # no limit, in both precisions
+    largest = float(np.finfo(np.float32).max)  # no limit, in both precisions
     arrays = {
         "POSITIONS": ("of the sensors in m: x, y, z", scenario.array.positions),
         "VARIANCE": ("of the shifts in Hz^2", np.full((1, n), scenario.sigma_f**2)),
-        "LOWER": (f"of the gate, {gate}, for 0 to {n} sensors", np.fmax(lower, -largest)[None]),
-        "UPPER": ("", np.fmin(upper, largest)[None]),
         "START": ("state one interval before the first sample", np.reshape(x0, (1, 6))),
-        "START_COVARIANCE": ("", scenario.P0),
+        "START_COVARIANCE": ("its covariance", scenario.P0),
     }
+    if gate:
+        lower, upper = (bound.clip(-largest, largest)[None] for bound in gate_bounds(gate, n))
+        arrays["LOWER"] = f"of the gate, {gate}, for 0 to {n} sensors", lower
+        arrays["UPPER"] = "and above", upper
     text = ""
     for name, (comment, rows) in arrays.items():
         lines = ",\n".join(
             textwrap.fill(_numbers(row), 79, initial_indent="    ", subsequent_indent="    ")
             for row in rows
         )
-        text += f"/* {comment} */\n" if comment else ""
-        text += f"static const doppler_real {name}[] = {{\n{lines}\n}};\n"
+        text += f"/* {comment} */\nstatic const doppler_real {name}[] = {{\n{lines}\n}};\n"
     return _SETTING.format(
         title=title, sensors=n, interval=float(scenario.T), arrays=text, noise=_NOISE[noise],
+        bounds="LOWER, UPPER" if gate else "0, 0",
         doppler_per_speed=scenario.array.doppler_per_speed, sigma_a=scenario.sigma_a,
         point=f"{{{_numbers(point)}}}", distance=distance, probability=probability,
         quantile=float(ndtri(probability)),

@@ -178,7 +178,7 @@ def test_what_is_committed_is_what_is_printed(printed):
 
 
 def test_there_is_no_other_source_but_the_example(printed):
-    assert {path.name for path in FIRMWARE.iterdir()} == {*printed, "main.c", "README.md"}
+    assert {path.name for path in FIRMWARE.glob("*.[ch]")} == {*printed, "main.c"}
 
 
 def test_double_precision_is_the_library_over_the_example(trackers, example):
