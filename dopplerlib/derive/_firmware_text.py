@@ -19,8 +19,9 @@ HEADER = (
  * before the target is too near. C99; no allocation, no recursion, no state
  * but that of the caller. From <math.h> it needs sqrt (or sqrtf), isnan, NAN.
  *
- * With DOPPLER_FLOAT defined all is in single precision. Fixed point is not
- * provided. Do not compile with -ffast-math: NaN is a missing measurement.
+ * With DOPPLER_FLOAT defined all is in single precision; README.md states its
+ * error. Fixed point is not provided. Do not compile with -ffast-math: NaN is
+ * a missing measurement.
  *
  * Operations at worst, all N sensors there, counted in the printed formulas;
  * C is the number of columns of the process noise, see doppler_noise:
