@@ -104,8 +104,8 @@ def where_it_ran():
 
 {table(("package", "version"), packages().items())}
 
-These are the packages that the project asks for; `environment.lock` holds all that they ask for in
-turn, with the hash of every file."""
+These are the packages that the project needs; `environment.lock` also lists the packages that these
+need, with the hash of every file."""
 
 
 def chapters_repeat():
@@ -170,15 +170,15 @@ Seeds are the arguments of `numpy.random.default_rng` in its cells.
 
 ## {SEEDS}
 
-A verdict stands only if it stands for every reasonable value of what we chose, and for every way
-in which the text can be read. `data/<document>/choices.toml` declares them, each with a date and a
-reason that does not depend on the result; a row that they turn says at which value.
+A verdict stands only if it stands for every reasonable value of our choices, and for every reading
+of the text. `data/<document>/choices.toml` declares these values, each with a date and a reason that
+does not depend on the result. If they change the verdict of a row, the row names the value.
 
-Random results change with the seed, verdicts should not, and no limit is moved to make it so: where
-our runs are too few to tell, the verdict is that, and stands on the page. What is decided stays so
-on an interval of twice the width of 95 %. `make record` draws the noise behind every claim again
-with five other seeds. It fails if a verdict turns into another one; one that is left undecided by
-some seeds and not by others is named in the last column.
+Random results change with the seed, but verdicts should not. No limit is moved to achieve this: if
+there are too few runs, the verdict on the page is *undecided*. A verdict is decided only if it also
+holds on an interval of twice the width of the 95 % interval. `make record` draws the noise for every
+claim again with five other seeds. It fails if a verdict changes into another one; the last column
+names the verdicts that are undecided with some seeds and decided with others.
 
 {table(("document", "seed", *VERDICTS, "undecided with one of the two seeds only"), rows)}
 
