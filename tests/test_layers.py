@@ -44,7 +44,7 @@ MAY_IMPORT = (
 # Libraries that only one package may import. With importlib an import could hide from this test,
 # though not with the part of it that finds files.
 ONLY = {"sympy": "derive", "matplotlib": "figures", "importlib": "_lazy"}
-HARMLESS = "importlib.resources"
+HARMLESS = "importlib.resources", "importlib.metadata"
 
 
 def imports(path, package):

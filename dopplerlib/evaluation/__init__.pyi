@@ -11,6 +11,7 @@ from . import error_correlation as error_correlation
 from . import first_order as first_order
 from . import frequency_benchmark as frequency_benchmark
 from . import intervals as intervals
+from . import monte_carlo as monte_carlo
 from . import noise_fit as noise_fit
 from . import observability as observability
 from . import path_bounds as path_bounds
