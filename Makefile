@@ -106,10 +106,11 @@ record: $(VENV)/.ready  ## compare every byte of the chapters, judge all claims 
 kernels: $(VENV)/.ready  ## derive the formulas, print the numerical kernels and C99 for firmware
 	$(PY) -m tools.kernels
 
-# NAME=noise_sweep runs that one; what it computes and costs: python -m studies NAME --help.
+# NAME=noise_sweep runs that one, WORKERS=4 in so many processes; what it computes and costs:
+# python -m studies NAME --help.
 .PHONY: study
 study: $(VENV)/.ready  ## run the study NAME=... and write results/NAME.* (list them without NAME)
-	$(PY) -m studies $(NAME)
+	$(PY) -m studies $(NAME) $(if $(WORKERS),--workers $(WORKERS))
 
 .PHONY: bench
 bench: $(BENCH)/.ready  ## run benchmarks/NAME.py; without NAME the filter beside other libraries

@@ -1,22 +1,26 @@
 """Run a study and write its results, or list the studies.
 
 results/NAME.* appears when it is complete. Beside the numbers stands results/NAME.toml, with the
-parameters and the versions that made them. An interrupted study goes on where it stopped.
+parameters and the versions that made them. An interrupted study goes on where it stopped. Worker
+processes, here or on other machines, change nothing but the time it takes.
 """
 
 import argparse
 import ast
 import json
-import platform
-from contextlib import closing
+import shutil
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from importlib import import_module
-from importlib.metadata import version
+from multiprocessing import get_context
 from pathlib import Path
 
 from dopplerlib._files import replacing
-from dopplerlib._progress import progress_bar
-from studies._resume import started
-from tools.command import start
+from dopplerlib._lazy import require
+from dopplerlib.evaluation._study_folder import versions
+from dopplerlib.evaluation.monte_carlo import run_study
+from tools.alone import alone
+from tools.command import quiet_worker, start
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE.parent / "results"
@@ -37,18 +41,33 @@ def listing():
     return "\n".join(f"{name:{max(map(len, names()))}}  {_first(name)}" for name in names())
 
 
-def run(name, folder=RESULTS):
-    """Do what is left of a study and write its files, all at once."""
+def run(name, folder=RESULTS, executor=None):
+    """Do what is left of a study and write its files, all at once.
+
+    Chunks of runs are kept in NAME.part until then. `executor` computes them; None: this process.
+    """
     study = import_module(f"studies.{name}")
-    items = list(study.items())
-    with started(folder / name, items, **study.PARAMETERS) as part:
-        with closing(study.rows(part.left)) as rows:
-            for _ in progress_bar(part.left, name, wanted=len(items) > 1):
-                part.keep(next(rows))
-        contents = [*study.contents(part.rows), provenance(study, name)]
-        with replacing(*files(study, name, folder), folder / f"{name}.toml") as unfinished:
-            for path, content in zip(unfinished, contents, strict=True):
+    parts, unfinished = list(study.parts()), folder / f"{name}.part"
+    parameters = json.loads(json.dumps(study.PARAMETERS, default=str))
+    with alone(unfinished / "lock", name):
+        found = [
+            run_study(
+                study.compute,
+                parameters | settings,
+                runs,
+                seed=parameters["seed"],
+                chunk=chunk,
+                folder=unfinished / str(place),
+                executor=executor,
+                label=f"{name} {place}/{len(parts)}" if runs > chunk else None,
+            )
+            for place, (settings, runs, chunk) in enumerate(parts, start=1)
+        ]
+        contents = [*study.contents(found), provenance(study, name)]
+        with replacing(*files(study, name, folder), folder / f"{name}.toml") as new:
+            for path, content in zip(new, contents, strict=True):
                 path.write_bytes(content.encode() if isinstance(content, str) else content)
+        shutil.rmtree(unfinished)
 
 
 def files(study, name, folder=RESULTS):
@@ -58,16 +77,31 @@ def files(study, name, folder=RESULTS):
 
 def provenance(study, name):
     """Return the text of the file that says how the others were made."""
-    made_by = {"python": platform.python_version()}
-    made_by |= {package: version(package) for package in ("dopplerlib", "numba", "numpy", "scipy")}
     lines = [f"# {_first(name)}", f"# Written by `make study NAME={name}`; do not edit."]
-    for title, table in {"parameters": study.PARAMETERS, "versions": made_by}.items():
+    for title, table in {"parameters": study.PARAMETERS, "versions": versions()}.items():
         lines += [
             "",
             f"[{title}]",
             *(f"{key} = {json.dumps(table[key], default=str)}" for key in table),
         ]
     return "\n".join(lines) + "\n"
+
+
+@contextmanager
+def executor(workers, scheduler):
+    """Give the executor that is asked for: of processes here, of a Dask cluster, or none."""
+    if scheduler is not None:
+        require("distributed", extra="cluster")
+        from distributed import Client
+
+        with Client(scheduler) as client:
+            yield client.get_executor()
+    elif workers > 1:
+        fresh = get_context("spawn")  # no thread of ours is copied
+        with ProcessPoolExecutor(workers, fresh, quiet_worker) as pool:
+            yield pool
+    else:
+        yield None
 
 
 def _first(name):
@@ -84,6 +118,9 @@ def main(argv=None):
         add_help=False,
     )
     options.add_argument("name", metavar="NAME", nargs="?", choices=names(), help="a study")
+    where = options.add_mutually_exclusive_group()
+    where.add_argument("--workers", metavar="N", type=int, default=1, help="processes, one if not")
+    where.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster: tcp://host:8786")
     options.add_argument("--help", action="store_true", help="show this, or what NAME is")
     chosen = options.parse_args(argv)
     if chosen.name is None:
@@ -91,7 +128,8 @@ def main(argv=None):
     elif chosen.help:
         print(about(chosen.name))
     else:
-        run(chosen.name)
+        with executor(chosen.workers, chosen.scheduler) as pool:
+            run(chosen.name, executor=pool)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ Some twenty minutes on one processor. Four cases of truths, the same runs for al
 """
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import asdict
 
 import numpy as np
 
@@ -55,39 +55,42 @@ DIGITS = {"runs": 4, "nees": 4, "position": 4} | dict.fromkeys(
 FIRST = [0, 1], [4, 9]  # runs and times of which NEES stands one by one, for a test
 
 
-def items():
-    """Return case, tracker, what it assumes and number of runs."""
+def parts():
+    """Return case, tracker and what it assumes, and the runs; slow ones in smaller chunks."""
     right = [(each, name, "right", n) for name, (cases, n) in RUNS.items() for each in cases]
-    runs = PARAMETERS["wrong_runs"]
-    return right + [(case, "bank", assumed, runs) for assumed, case in WRONG.items()]
+    wrong = [(each, "bank", name, PARAMETERS["wrong_runs"]) for name, each in WRONG.items()]
+    return [
+        ({"case": case, "tracker": tracker, "assumed": assumed}, runs, _chunk(runs))
+        for case, tracker, assumed, runs in right + wrong
+    ]
 
 
-def rows(items):
-    """Yield the statistics of each item."""
-    for case, tracker, assumed, runs in items:
-        pieces = [
-            case_errors(case, tracker, first, min(PARAMETERS["piece"], runs - first),
-                        seed=PARAMETERS["seed"], **ASSUMED[assumed])
-            for first in range(0, runs, PARAMETERS["piece"])
-        ]  # fmt: skip
-        whole = {
-            field.name: np.concatenate([getattr(piece, field.name) for piece in pieces])
-            for field in fields(TrackErrors)
-        }
-        found = asdict(error_summary(TrackErrors(**whole)))
-        if (tracker, assumed) != ("bank", "right"):
-            del found["axes"], found["inside"]
-        kept = {name: _rounded(values, DIGITS.get(name, 3)) for name, values in found.items()}
-        first = _rounded(whole["nees"][np.ix_(*FIRST)], 4)
-        yield {"case": case, "tracker": tracker, "assumed": assumed, "first": first, **kept}
+def compute(settings, seed, runs):
+    """Return the errors of a tracker in some runs."""
+    case, tracker, assumed = (settings[name] for name in ("case", "tracker", "assumed"))
+    return vars(case_errors(case, tracker, runs.start, len(runs), seed=seed, **ASSUMED[assumed]))
 
 
-def contents(rows):
-    """Return all rows, a line for each."""
-    parts = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
+def row(settings, found):
+    """Return the statistics of all runs of a part."""
+    summary = asdict(error_summary(TrackErrors(**found)))
+    if (settings["tracker"], settings["assumed"]) != ("bank", "right"):
+        del summary["axes"], summary["inside"]
+    kept = {name: _rounded(values, DIGITS.get(name, 3)) for name, values in summary.items()}
+    return settings | {"first": _rounded(found["nees"][np.ix_(*FIRST)], 4)} | kept
+
+
+def contents(found):
+    """Return the statistics of all parts, a line for each."""
+    rows = [row(settings, one) for (settings, *_), one in zip(parts(), found, strict=True)]
+    head = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
     lines = ",\n".join("    " + json.dumps(row, separators=(",", ":")) for row in rows)
-    parts.append(f'  "rows": [\n{lines}\n  ]')
-    return ["{\n" + ",\n".join(parts) + "\n}\n"]
+    head.append(f'  "rows": [\n{lines}\n  ]')
+    return ["{\n" + ",\n".join(head) + "\n}\n"]
+
+
+def _chunk(runs):
+    return min(PARAMETERS["piece"], max(1, runs // 10))
 
 
 def _rounded(values, digits):

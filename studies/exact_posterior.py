@@ -19,36 +19,31 @@ PARAMETERS = {
 COLUMNS = "case,run,sample,efficiency,nees,position,velocity"
 
 
-def items():
-    """Return case and first run of each part; of all cases in turn."""
-    runs = dict(zip(PARAMETERS["cases"], PARAMETERS["runs"], strict=True))
+def parts():
+    """Return the cases."""
+    runs = zip(PARAMETERS["cases"], PARAMETERS["runs"], strict=True)
+    return [({"case": case}, number, PARAMETERS["chunk"]) for case, number in runs]
+
+
+def compute(settings, seed, runs):
+    """Return efficiency, NEES, and errors in mm and mm/s of some runs, at all times."""
+    draws = settings["draws"]
+    found = posterior_errors(settings["case"], runs.start, len(runs), seed=seed, draws=draws)
+    found[2:] *= 1e3
+    return {"columns": np.moveaxis(found, 0, -1)}
+
+
+def lines(found):
+    """Return a line for each run and time at which it has not ended, of all cases in turn."""
+    size = PARAMETERS["chunk"]
     return [
-        (case, first)
-        for first in range(0, max(runs.values()), PARAMETERS["chunk"])
-        for case in runs
-        if first < runs[case]
+        f"{case},{first + run},{SAMPLES[o]}," + ",".join(f"{v:.4g}" for v in columns[run, o])
+        for first in range(0, max(PARAMETERS["runs"]), size)
+        for case, columns in enumerate(one["columns"][first : first + size] for one in found)
+        for run, o in np.argwhere(~np.isnan(columns[..., 0]))
     ]
 
 
-def rows(items):
-    """Yield the lines of each part."""
-    for case, first in items:
-        chunk, draws = PARAMETERS["chunk"], PARAMETERS["draws"]
-        found = posterior_errors(case, first, chunk, seed=PARAMETERS["seed"], draws=draws)
-        found[2:] *= 1e3
-        yield lines(case, first, found)
-
-
-def lines(case, first, found):
-    """Return a line for each run and time of columns (C, runs, O), unless it is NaN."""
-    number = PARAMETERS["cases"].index(case)
-    return [
-        f"{number},{first + run},{SAMPLES[o]},"
-        + ",".join(f"{value:.4g}" for value in found[:, run, o])
-        for run, o in np.argwhere(~np.isnan(found[0]))
-    ]
-
-
-def contents(rows):
-    """Return a line for each run and time; errors in mm and mm/s."""
-    return ["\n".join([COLUMNS, *(line for part in rows for line in part)]) + "\n"]
+def contents(found):
+    """Return a line for each run and time."""
+    return ["\n".join([COLUMNS, *lines(found)]) + "\n"]

@@ -22,6 +22,7 @@ from dopplerlib.workspace.stopping import (
 )
 from dopplerlib.workspace.targets import INTERVAL, SIGMA_F, draw_records, draw_targets
 from dopplerlib.workspace.trackers import track_targets
+from studies._rows import rows, texts
 
 FILES = (".json",)
 COMPILED = (
@@ -41,19 +42,23 @@ MOVING = "acceleration", "turn"  # kinds of faults that make another course
 FIRST = 3  # runs whose errors are kept, to be computed again
 
 
-def items():
-    """Return the names of the faults."""
-    return list(FAULTS)
+def parts():
+    """Return the one part, of which each run is a fault."""
+    return [({}, len(FAULTS), 1)]
 
 
-def rows(items):
-    """Yield for each fault what each tracker makes of it."""
-    for fault in items:
-        errors = {name: errors_of(fault, name) for name in (*COMPILED, *SLOW)}
-        decisions = {name: decisions_of(fault, name) for name in DECIDING}
-        records.cache_clear()
-        begun.cache_clear()
-        yield {"fault": fault, "errors": errors, "decisions": decisions}
+def compute(settings, seed, runs):
+    """Return what the trackers make of some faults."""
+    return texts(row([*FAULTS][run]) for run in runs)
+
+
+def row(fault):
+    """Return what each tracker makes of a fault."""
+    errors = {name: errors_of(fault, name) for name in (*COMPILED, *SLOW)}
+    decisions = {name: decisions_of(fault, name) for name in DECIDING}
+    records.cache_clear()
+    begun.cache_clear()
+    return {"fault": fault, "errors": errors, "decisions": decisions}
 
 
 def errors_of(fault, tracker):
@@ -174,14 +179,14 @@ def decided(fault, tracker, kind):
     return courses_along(paths), stop_times(paths, x, P, rule, threshold, every=STEPS)
 
 
-def contents(rows):
+def contents(found):
     """Return all rows, a line for each fault and tracker."""
     lines = []
-    for row in rows:
-        for name, errors in row["errors"].items():
-            one = {"fault": row["fault"], "tracker": name, **errors}
-            if name in row["decisions"]:
-                one["decisions"] = row["decisions"][name]
+    for fault in rows(*found):
+        for name, errors in fault["errors"].items():
+            one = {"fault": fault["fault"], "tracker": name, **errors}
+            if name in fault["decisions"]:
+                one["decisions"] = fault["decisions"][name]
             lines.append("    " + json.dumps(one, separators=(",", ":"), ensure_ascii=False))
     return ['{\n  "rows": [\n' + ",\n".join(lines) + "\n  ]\n}\n"]
 

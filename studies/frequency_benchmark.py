@@ -7,6 +7,7 @@ same ones for all estimators of the library.
 import json
 
 from dopplerlib.evaluation import frequency_benchmark as benchmark
+from studies._rows import rows, texts
 
 FILES = (".json",)
 PARAMETERS = {
@@ -17,15 +18,14 @@ PARAMETERS = {
 COLUMNS = ("outliers", "ratio", "low", "high")
 
 
-def items():
-    """Return the levels."""
-    return benchmark.LEVELS
+def parts():
+    """Return the one part, of which each run is a level."""
+    return [({}, len(benchmark.LEVELS), 1)]
 
 
-def rows(items):
-    """Yield what is found at each level."""
-    for snr_db in items:
-        yield level(snr_db)
+def compute(settings, seed, runs):
+    """Return what is found at some levels."""
+    return texts(level(settings["snr_db"][run]) for run in runs)
 
 
 def level(snr_db, names=tuple(benchmark.ESTIMATORS)):
@@ -39,13 +39,14 @@ def level(snr_db, names=tuple(benchmark.ESTIMATORS)):
     return result
 
 
-def contents(rows):
+def contents(found):
     """Return the table: a column by level, for each estimator."""
-    parts = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
+    levels = rows(*found)
+    text = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
     for k, column in enumerate(COLUMNS):
         lines = (
-            f'    "{name}": {json.dumps([found[name][k] for found in rows])}'
+            f'    "{name}": {json.dumps([one[name][k] for one in levels])}'
             for name in benchmark.ESTIMATORS
         )
-        parts.append(f'  "{column}": {{\n' + ",\n".join(lines) + "\n  }")
-    return ["{\n" + ",\n".join(parts) + "\n}\n"]
+        text.append(f'  "{column}": {{\n' + ",\n".join(lines) + "\n  }")
+    return ["{\n" + ",\n".join(text) + "\n}\n"]

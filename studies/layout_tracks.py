@@ -3,8 +3,6 @@
 Twelve minutes on one processor. Targets are others than those over which layouts were searched.
 """
 
-import json
-
 import numpy as np
 
 from dopplerlib import RadarArray
@@ -14,6 +12,7 @@ from dopplerlib.workspace._solutions import same_shifts
 from dopplerlib.workspace.layout_results import saved_arrays
 from dopplerlib.workspace.layouts import layout_quality, named_layouts
 from dopplerlib.workspace.targets import INTERVAL, TABLE_2, draw_targets
+from studies._rows import by_kind, rows, texts
 
 FILES = (".json",)
 PARAMETERS = {
@@ -41,6 +40,12 @@ COUNTED = ("three", "four", "five", "six", "seven", "six, 5 cm deep", "ring of s
 MOVING = "three", "four", "six", "ring of six"  # of them, those along a path
 
 
+def parts():
+    """Return the one part, of which each run is an item; it depends on the layouts of a study."""
+    places = {name: array.positions.tolist() for name, array in saved_arrays().items()}
+    return [({"layouts": places}, len(items()), 1)]
+
+
 def items():
     """Return kind of work, layout, and what else it is about."""
     sizes = {name: len(array) for name, array in saved_arrays().items()}
@@ -56,33 +61,31 @@ def items():
     return work
 
 
-def rows(items):
-    """Yield the numbers of each item."""
-    layouts = saved_arrays()
-    for kind, name, *how in items:
-        row = {"kind": kind, "layout": name}
-        if kind == "solutions":
-            yield row | {"motion": how[0]} | _solutions(name, *how)
-            continue
-        array = layouts[name]
-        if kind != "map" and how[0] is not None:
-            row["without"] = how[0]
-            array = RadarArray(np.delete(array.positions, how[0], axis=0))
-        if kind == "quality":
-            yield row | _quality(array, "without" in row)
-        elif kind == "map":
-            yield row | _map(array)
-        else:
-            yield row | {"case": how[1], "chunk": how[2]} | _track(array, *how[1:])
+def compute(settings, seed, runs):
+    """Return the numbers of some items."""
+    work = items()
+    return texts(row(*work[run]) for run in runs)
 
 
-def contents(rows):
+def row(kind, name, *how):
+    """Return the numbers of an item."""
+    one = {"kind": kind, "layout": name}
+    if kind == "solutions":
+        return one | {"motion": how[0]} | _solutions(name, *how)
+    array = saved_arrays()[name]
+    if kind != "map" and how[0] is not None:
+        one["without"] = how[0]
+        array = RadarArray(np.delete(array.positions, how[0], axis=0))
+    if kind == "quality":
+        return one | _quality(array, "without" in one)
+    if kind == "map":
+        return one | _map(array)
+    return one | {"case": how[1], "chunk": how[2]} | _track(array, *how[1:])
+
+
+def contents(found):
     """Return all rows by their kind, a line for each."""
-    parts = []
-    for kind in dict.fromkeys(row["kind"] for row in rows):
-        lines = ",\n".join("    " + json.dumps(row) for row in rows if row["kind"] == kind)
-        parts.append(f'  "{kind}": [\n{lines}\n  ]')
-    return ["{\n" + ",\n".join(parts) + "\n}\n"]
+    return [by_kind(rows(*found))]
 
 
 def _start(path):

@@ -3,7 +3,6 @@
 Ten minutes on one processor. In the disc of the paper's ring, and in the cylinder 5 cm behind it.
 """
 
-import json
 from itertools import product
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from dopplerlib.workspace._layout_search import fewest_twins, smallest_bound
 from dopplerlib.workspace.layouts import layout_quality
 from dopplerlib.workspace.targets import INTERVAL, draw_targets
+from studies._rows import by_kind, rows, texts
 
 FILES = (".json",)
 PARAMETERS = {
@@ -26,6 +26,11 @@ PARAMETERS = {
 }  # fmt: skip
 
 
+def parts():
+    """Return the one part, of which each run is a search."""
+    return [({}, len(items()), 1)]
+
+
 def items():
     """Return kind, number of sensors, depth of the room, and static or limit and generations."""
     bounds = product(["bound"], range(4, 9), PARAMETERS["depths"], [True, False])
@@ -39,32 +44,31 @@ def targets(name):
     return x - INTERVAL * np.pad(x[:, 3:], ((0, 0), (0, 3)))
 
 
-def rows(items):
-    """Yield the layout that each search has found, in millimeters, and how well."""
+def compute(settings, seed, runs):
+    """Return what some searches have found."""
+    work = items()
+    return texts(row(*work[run]) for run in runs)
+
+
+def row(kind, n, depth, how, *generations):
+    """Return the layout that a search has found, in millimeters, and how well."""
     few, many = targets("bound_targets"), targets("targets")
-    for kind, n, depth, how, *generations in items:
-        rng = np.random.default_rng([PARAMETERS["seed"], n, round(1e3 * depth)])
-        row = {"kind": kind, "n": n, "depth": depth}
-        if kind == "bound":
-            samples = 10 if how else 100
-            found = smallest_bound(n, few, samples, rng=rng, static=how, depth=depth)
-            row |= {"static": how, "bound": round(found.bound, 6)}
-            row |= {"global": found.global_rate, "local": found.local_rate}
-        else:
-            start = smallest_bound(n, few, rng=rng, depth=depth, searches=1, starts=2).array
-            limit = how * float(np.exp(np.log(layout_quality(many, start).moving).mean()))
-            found = fewest_twins(
-                start, many, limit, rng=rng, depth=depth, generations=generations[0]
-            )
-            row |= {"limit": how, "bound": round(found.bound, 6)}
-            row |= {"probability": round(found.probability, 6)}
-        yield row | {"sensors": np.rint(1e3 * found.array.positions).astype(int).tolist()}
+    rng = np.random.default_rng([PARAMETERS["seed"], n, round(1e3 * depth)])
+    one = {"kind": kind, "n": n, "depth": depth}
+    if kind == "bound":
+        samples = 10 if how else 100
+        found = smallest_bound(n, few, samples, rng=rng, static=how, depth=depth)
+        one |= {"static": how, "bound": round(found.bound, 6)}
+        one |= {"global": found.global_rate, "local": found.local_rate}
+    else:
+        start = smallest_bound(n, few, rng=rng, depth=depth, searches=1, starts=2).array
+        limit = how * float(np.exp(np.log(layout_quality(many, start).moving).mean()))
+        found = fewest_twins(start, many, limit, rng=rng, depth=depth, generations=generations[0])
+        one |= {"limit": how, "bound": round(found.bound, 6)}
+        one |= {"probability": round(found.probability, 6)}
+    return one | {"sensors": np.rint(1e3 * found.array.positions).astype(int).tolist()}
 
 
-def contents(rows):
+def contents(found):
     """Return all rows by their kind, a line for each."""
-    parts = []
-    for kind in dict.fromkeys(row["kind"] for row in rows):
-        lines = ",\n".join("    " + json.dumps(row) for row in rows if row["kind"] == kind)
-        parts.append(f'  "{kind}": [\n{lines}\n  ]')
-    return ["{\n" + ",\n".join(parts) + "\n}\n"]
+    return [by_kind(rows(*found))]

@@ -13,26 +13,29 @@ FILES = (".json",)
 PARAMETERS = {"seed": 20, "runs": 60}
 
 
-def items():
-    """Return the one part: all competitors see the same records."""
-    return [PARAMETERS["runs"]]
+def parts():
+    """Return the one part, in one chunk: all competitors see the same records."""
+    return [({}, PARAMETERS["runs"], PARAMETERS["runs"])]
 
 
-def rows(items):
-    """Yield the errors of all runs by case and competitor, in m/s."""
-    for runs in items:
-        found = model_errors(runs, rng=np.random.default_rng(PARAMETERS["seed"]))
-        yield {
-            case: {name: error.round(5).tolist() for name, error in row.items()}
-            for case, row in found.items()
-        }
+def compute(settings, seed, runs):
+    """Return the errors of some runs by case and competitor, in m/s."""
+    found = model_errors(runs.stop, rng=np.random.default_rng(seed))
+    return {
+        f"{case}: {name}": error[runs.start :]
+        for case, row in found.items()
+        for name, error in row.items()
+    }
 
 
-def contents(rows):
+def contents(found):
     """Return the errors, a line for each competitor of each case."""
-    (found,) = rows
+    table = {}
+    for title, errors in found[0].items():
+        case, _, name = title.partition(": ")
+        table.setdefault(case, {})[name] = errors.round(5).tolist()
     cases = []
-    for case, row in found.items():
+    for case, row in table.items():
         lines = (f'  "{name}": {json.dumps(errors)}' for name, errors in row.items())
         cases.append(f' "{case}": {{\n' + ",\n".join(lines) + "\n }")
     return ["{\n" + ",\n".join(cases) + "\n}\n"]

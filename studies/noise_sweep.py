@@ -8,27 +8,25 @@ from dataclasses import asdict
 
 import numpy as np
 
-from dopplerlib.systems.mittermaier2016 import SweepReading, run_noise_sweep
+from dopplerlib.systems.mittermaier2016 import SweepReading, noise_levels, run_noise_sweep
 
 FILES = (".csv",)
 PARAMETERS = {"seed": 4, **asdict(SweepReading())}
 
 
-def items():
-    """Return what is computed in one go."""
-    return ["all levels"]
+def parts():
+    """Return the one part, of which each run is a level; a chunk draws all velocities anew."""
+    return [({}, len(noise_levels()), 8)]
 
 
-def rows(items):
-    """Yield the columns of the table."""
-    for _ in items:
-        result = run_noise_sweep(rng=np.random.default_rng(PARAMETERS["seed"]), progress=True)
-        yield {name: value.tolist() for name, value in vars(result).items()}
+def compute(settings, seed, runs):
+    """Return what the table holds at some levels."""
+    return vars(run_noise_sweep(runs, rng=np.random.default_rng(seed)))
 
 
-def contents(rows):
+def contents(found):
     """Return the table: mean and median errors, and their bounds."""
-    (columns,) = rows
+    columns = dict(found[0])
     variances = columns.pop("variance")
     lines = [["variance_hz2", "series", *columns]]
     for level, variance in enumerate(variances):

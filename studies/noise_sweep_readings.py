@@ -16,20 +16,20 @@ from dopplerlib.systems.mittermaier2016 import (
     sweep_readings,
     sweep_score,
 )
+from studies._rows import rows, texts
 
 FILES = (".json",)
 PARAMETERS = {"seed": 4, "draws": 24, "levels": list(scored_levels()), "seed_again": 11}
 
 
-def items():
-    """Return the readings."""
-    return sweep_readings()
+def parts():
+    """Return the one part, of which each run is a reading."""
+    return [({}, len(sweep_readings()), 1)]
 
 
-def rows(items):
-    """Yield the score of each reading."""
-    for reading in items:
-        yield score(reading, PARAMETERS["seed"])
+def compute(settings, seed, runs):
+    """Return the scores of some readings."""
+    return texts(score(sweep_readings()[run], seed) for run in runs)
 
 
 def score(reading, seed):
@@ -46,15 +46,16 @@ def score(reading, seed):
     return asdict(reading) | dict(zip(("score", "low", "high"), rounded, strict=True))
 
 
-def contents(rows):
+def contents(found):
     """Return the table of scores."""
+    scores = rows(*found)
     best = [
-        max(range(len(rows)), key=lambda i: (rows[i]["likelihood"] == name, rows[i]["score"]))
+        max(range(len(scores)), key=lambda i: (scores[i]["likelihood"] == name, scores[i]["score"]))
         for name in ("constant_velocity", "stationary")
     ]
     again = [score(sweep_readings()[i], PARAMETERS["seed_again"]) for i in best]
-    parts = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
-    for name, table in {"again": again, "readings": rows}.items():
+    text = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
+    for name, table in {"again": again, "readings": scores}.items():
         lines = ",\n".join("    " + json.dumps(row) for row in table)
-        parts.append(f'  "{name}": [\n{lines}\n  ]')
-    return ["{\n" + ",\n".join(parts) + "\n}\n"]
+        text.append(f'  "{name}": [\n{lines}\n  ]')
+    return ["{\n" + ",\n".join(text) + "\n}\n"]

@@ -37,29 +37,38 @@ SCENES = {
 }  # fmt: skip
 
 
-def items():
-    """Return scene, kind, fraction and number of each part of the runs."""
+def parts():
+    """Return scene, kind and fraction, and their runs: chunks of so many."""
     first = PARAMETERS["fractions"][0]
     return [
-        item
-        for item in product(SCENES, KINDS, PARAMETERS["fractions"], range(PARAMETERS["chunks"]))
-        if item[2] > first or item[1] == KINDS[0]  # without wrong windows there is one kind
+        (
+            {"scene": scene, "kind": kind, "fraction": fraction},
+            PARAMETERS["chunks"] * PARAMETERS[f"{scene}_runs"],
+            PARAMETERS[f"{scene}_runs"],
+        )
+        for scene, kind, fraction in product(SCENES, KINDS, PARAMETERS["fractions"])
+        if fraction > first or kind == KINDS[0]  # without wrong windows there is one kind
     ]
 
 
-def rows(items):
-    """Yield the lines of each part."""
-    for scene, kind, fraction, chunk in items:
-        places = list(SCENES).index(scene), KINDS.index(kind), round(100 * fraction), chunk
-        rng = np.random.default_rng([PARAMETERS["seed"], *places])
-        head = f"{places[0]},{places[1]},{fraction}"
-        yield [
-            f"{head},{line(scene, kind, fraction, child)}"
-            for child in rng.spawn(PARAMETERS[f"{scene}_runs"])
-        ]
+def compute(settings, seed, runs):
+    """Return errors and convergence of some runs: each chunk has a seed, each run its child."""
+    scene, kind, fraction = (settings[name] for name in ("scene", "kind", "fraction"))
+    places, size = numbers(scene, kind, fraction), PARAMETERS[f"{scene}_runs"]
+    children = [
+        np.random.SeedSequence([seed, *places, run // size], spawn_key=(run % size,))
+        for run in runs
+    ]
+    found = [outcome(scene, kind, fraction, np.random.default_rng(one)) for one in children]
+    return {"outcome": np.array(found)}
 
 
-def line(scene, kind, fraction, rng):
+def numbers(scene, kind, fraction):
+    """Return the numbers of a part, which are part of its seeds."""
+    return list(SCENES).index(scene), KINDS.index(kind), round(100 * fraction)
+
+
+def outcome(scene, kind, fraction, rng):
     """Return position errors in m of three fits to one record, and whether two have converged."""
     array, _, T, sigma_f, box, states, _ = SCENES[scene]
     x = rng.uniform(*states)
@@ -70,9 +79,7 @@ def line(scene, kind, fraction, rng):
     # What one module beside a road measures of the place is the miss distance.
     part = slice(1, 2) if scene == "road" else slice(3)
     errors = (np.linalg.norm(fit.x[part] - x[part]) for fit in (right, robust, plain))
-    return ",".join(
-        [*(f"{error:.4g}" for error in errors), *(f"{s.converged:d}" for s in (robust, plain))]
-    )
+    return [*errors, robust.converged, plain.converged]
 
 
 def record(scene, x, kind, fraction, rng):
@@ -104,6 +111,13 @@ def record(scene, x, kind, fraction, rng):
     return np.where(wrong, other, z), wrong
 
 
-def contents(rows):
+def contents(found):
     """Return a line for each run."""
-    return ["\n".join([COLUMNS, *(line for part in rows for line in part)]) + "\n"]
+    lines = [COLUMNS]
+    for (settings, *_), part in zip(parts(), found, strict=True):
+        scene, kind, _ = numbers(**settings)
+        head = f"{scene},{kind},{settings['fraction']}"
+        for *errors, robust, plain in part["outcome"]:
+            values = ",".join(f"{error:.4g}" for error in errors)
+            lines.append(f"{head},{values},{robust:.0f},{plain:.0f}")
+    return ["\n".join(lines) + "\n"]

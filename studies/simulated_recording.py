@@ -6,6 +6,8 @@ A second. Bit for bit the same everywhere: the samples are rounded to 16 bits.
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
+
 from dopplerlib.chain.simulation import MODULE_FAULTS
 from dopplerlib.systems.mittermaier2016 import SIMULATED, write_simulated_iq
 
@@ -13,17 +15,21 @@ FILES = (".sigmf-meta", ".sigmf-data", ".truth.csv")
 PARAMETERS = SIMULATED | MODULE_FAULTS
 
 
-def items():
-    """Return what is computed in one go."""
-    return ["all files"]
+def parts():
+    """Return the one part: a single run."""
+    return [({}, 1, 1)]
 
 
-def rows(items):
-    """Yield the name of what is written."""
-    yield from items
-
-
-def contents(rows):
-    """Return metadata, samples and truth."""
+def compute(settings, seed, runs):
+    """Return metadata, samples and truth, byte by byte."""
     with TemporaryDirectory() as folder:
-        return [Path(path).read_bytes() for path in write_simulated_iq(folder)]
+        written = [Path(path).read_bytes() for path in write_simulated_iq(folder)]
+    return {
+        end: np.frombuffer(content, np.uint8)[None]
+        for end, content in zip(FILES, written, strict=True)
+    }
+
+
+def contents(found):
+    """Return metadata, samples and truth."""
+    return [found[0][end].tobytes() for end in FILES]

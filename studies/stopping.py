@@ -9,6 +9,7 @@ from io import BytesIO
 import numpy as np
 
 from dopplerlib.workspace.stop_study import SCENES, decision_numbers, stop_runs
+from studies._rows import rows, texts
 
 FILES = (".npz",)
 PARAMETERS = {
@@ -19,33 +20,35 @@ PARAMETERS = {
 }
 
 
-def items():
-    """Return scene and number of each part."""
-    parts = zip(SCENES, PARAMETERS["parts"], strict=True)
-    return [(scene, part) for scene, count in parts for part in range(count)]
+def parts():
+    """Return the scenes, of each of which a run is a part of its courses."""
+    numbers = zip(SCENES, PARAMETERS["passing"], PARAMETERS["parts"], strict=True)
+    return [({"scene": scene, "near": passing}, runs, 1) for scene, passing, runs in numbers]
 
 
-def rows(items):
-    """Yield facts on the courses of a part, and when each tracker decides."""
-    passing = dict(zip(SCENES, PARAMETERS["passing"], strict=True))
-    for scene, part in items:
-        sizes = PARAMETERS["targets"], passing[scene]
-        study = stop_runs(scene, part, *sizes, seed=PARAMETERS["seed"])
-        courses = study.courses
-        facts = np.stack([courses.entry, courses.need, courses.closest], axis=-1)
-        found = np.stack([decision_numbers(alarm) for alarm in study.alarm.values()])
-        yield {"scene": scene, "courses": facts.round(6).tolist(), "decisions": found.tolist()}
+def compute(settings, seed, runs):
+    """Return facts on the courses of some parts, and when each tracker decides."""
+    return texts(row(settings, seed, run) for run in runs)
 
 
-def contents(rows):
+def row(settings, seed, part):
+    """Return facts on the courses of a part, and when each tracker decides."""
+    study = stop_runs(settings["scene"], part, settings["targets"], settings["near"], seed=seed)
+    courses = study.courses
+    facts = np.stack([courses.entry, courses.need, courses.closest], axis=-1)
+    found = np.stack([decision_numbers(alarm) for alarm in study.alarm.values()])
+    return {"courses": facts.round(6).tolist(), "decisions": found.tolist()}
+
+
+def contents(found):
     """Return the arrays of `saved_stops`."""
     arrays = {}
-    for scene in SCENES:
-        parts = [row for row in rows if row["scene"] == scene]
-        arrays[f"{scene}: courses"] = np.concatenate([part["courses"] for part in parts])
-        found = np.concatenate([np.array(part["decisions"], np.uint8) for part in parts], axis=1)
+    for scene, part in zip(SCENES, found, strict=True):
+        kept = rows(part)
+        arrays[f"{scene}: courses"] = np.concatenate([one["courses"] for one in kept])
+        numbers = np.concatenate([np.array(one["decisions"], np.uint8) for one in kept], axis=1)
         # Differences from threshold to threshold are small numbers, which compress.
-        arrays[f"{scene}: decisions"] = np.diff(found, axis=-1, prepend=np.uint8(0))
+        arrays[f"{scene}: decisions"] = np.diff(numbers, axis=-1, prepend=np.uint8(0))
     file = BytesIO()
     np.savez_compressed(file, **arrays)
     return [file.getvalue()]

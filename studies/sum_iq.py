@@ -21,25 +21,25 @@ PARAMETERS = {
 COLUMNS = "run,time,hop,error_ekf,nees_ekf,error_sum,nees_sum"
 
 
-def items():
-    """Return the first run of each part."""
-    return list(range(0, PARAMETERS["runs"], PARAMETERS["chunk"]))
+def parts():
+    """Return the one part, of which each run is a chunk of records that are drawn together."""
+    return [({}, PARAMETERS["runs"] // PARAMETERS["chunk"], 1)]
 
 
-def rows(items):
-    """Yield the lines of each part."""
-    times, chunk = PARAMETERS["times"], PARAMETERS["chunk"]
-    for first in items:
-        iq, lines = records(first, chunk), []
-        for hop in PARAMETERS["hops"]:
-            found = paper.track_iq(iq, window=PARAMETERS["window"], hop=hop)
-            alone, several = paper.track_errors(found, times), paper.sum_errors(found, times)
-            columns = 1e3 * alone.error, alone.nees, 1e3 * several[0], several[1]
-            for place, time in enumerate(times):
-                for run in range(chunk):
-                    numbers = ",".join(f"{c[place, run]:.4g}" for c in columns)
-                    lines.append(f"{first + run},{time},{hop},{numbers}")
-        yield lines
+def compute(settings, seed, runs):
+    """Return the errors of some chunks."""
+    return {"columns": np.array([errors(run * settings["chunk"], settings) for run in runs])}
+
+
+def errors(first, settings):
+    """Return errors in mm and NEES of both trackers (hops, times, chunk, 4)."""
+    iq, times, both = records(first, settings["chunk"]), settings["times"], []
+    for hop in settings["hops"]:
+        found = paper.track_iq(iq, window=settings["window"], hop=hop)
+        alone, several = paper.track_errors(found, times), paper.sum_errors(found, times)
+        columns = 1e3 * alone.error, alone.nees, 1e3 * several[0], several[1]
+        both.append(np.stack(columns, axis=-1))
+    return both
 
 
 def records(first, runs):
@@ -50,6 +50,12 @@ def records(first, runs):
     return simulate_baseband(scenario, runs, rng=rng, snr_db=level)
 
 
-def contents(rows):
-    """Return a line for each run, time and hop; errors in mm."""
-    return ["\n".join([COLUMNS, *(line for part in rows for line in part)]) + "\n"]
+def contents(found):
+    """Return a line for each run, time and hop."""
+    columns, hops, times = found[0]["columns"], PARAMETERS["hops"], PARAMETERS["times"]
+    lines = [COLUMNS]
+    for chunk, hop, time, run in np.ndindex(columns.shape[:-1]):
+        values = ",".join(f"{value:.4g}" for value in columns[chunk, hop, time, run])
+        number = chunk * PARAMETERS["chunk"] + run
+        lines.append(f"{number},{times[time]},{hops[hop]},{values}")
+    return ["\n".join(lines) + "\n"]

@@ -14,6 +14,7 @@ from dopplerlib.chain.setup import example
 from dopplerlib.chain.simulation import simulate_recording
 from dopplerlib.evaluation.symptoms import symptoms
 from dopplerlib.signal.synthesis import complex_noise
+from studies._rows import rows, texts
 
 FILES = (".json",)
 PARAMETERS = {"seed": 20161128, "runs": 30, "fs": 4000.0, "length": 2.0, "snr_db": 24.0}
@@ -194,19 +195,23 @@ MISTAKES = {
 }
 
 
-def items():
-    """Return mistake and number of each run."""
-    return [(name, run) for name in MISTAKES for run in range(PARAMETERS["runs"])]
+def parts():
+    """Return the mistakes."""
+    return [({"mistake": name}, PARAMETERS["runs"], 5) for name in MISTAKES]
 
 
-def rows(items):
-    """Yield the symptoms of a run, and its error, which only the truth shows."""
-    for name, run in items:
-        scene = Scene(run)
-        recording, setup = MISTAKES[name][0](scene)
-        sensors = [int(one) + 1 for one in (scene.one, scene.other)]
-        row = {"mistake": name, "run": run, "sensors": sensors}
-        yield row | measured(scene, recording, setup)
+def compute(settings, seed, runs):
+    """Return the symptoms of a mistake in some runs."""
+    return texts(row(settings["mistake"], run) for run in runs)
+
+
+def row(name, run):
+    """Return the symptoms of a run, and its error, which only the truth shows."""
+    scene = Scene(run)
+    recording, setup = MISTAKES[name][0](scene)
+    sensors = [int(one) + 1 for one in (scene.one, scene.other)]
+    one = {"mistake": name, "run": run, "sensors": sensors}
+    return one | measured(scene, recording, setup)
 
 
 def measured(scene, recording, setup):
@@ -234,7 +239,7 @@ def _short(value):
     return value
 
 
-def contents(rows):
+def contents(found):
     """Return all runs, a line for each."""
-    lines = ",\n".join("    " + json.dumps(row) for row in rows)
+    lines = ",\n".join("    " + json.dumps(one) for part in found for one in rows(part))
     return [f'{{\n  "rows": [\n{lines}\n  ]\n}}\n']

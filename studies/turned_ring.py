@@ -15,24 +15,36 @@ FILES = (".json",)
 PARAMETERS = {"seed": 2016, "chunks": 24, "runs": 500, "angles": list(other_motion.ANGLES)}
 
 
-def items():
-    """Return gate, start and number of each part."""
-    return list(product(GATES, starts(), range(PARAMETERS["chunks"])))
+def parts():
+    """Return gates and starts, of each of which a run is a chunk of records with the same noise."""
+    chunks = PARAMETERS["chunks"]
+    return [({"gate": gate, "start": start}, chunks, 1) for gate, start in product(GATES, starts())]
 
 
-def rows(items):
-    """Yield the mean of the logarithms of a part's ratios, and that of their squares."""
-    for gate, start, chunk in items:
-        rng = np.random.default_rng([PARAMETERS["seed"], chunk])
-        found = other_motion.turned_rings(gate, start, PARAMETERS["runs"], rng)
-        moments = (found.mean(axis=0), (found**2).mean(axis=0))
-        mean, square = (one.round(5).tolist() for one in moments)
-        yield {"gate": gate, "start": start, "chunk": chunk, "mean": mean, "square": square}
+def compute(settings, seed, runs):
+    """Return the mean of the logarithms of the ratios in some chunks, and that of their squares."""
+    gate, start, records = (settings[name] for name in ("gate", "start", "runs"))
+    found = [
+        other_motion.turned_rings(gate, start, records, np.random.default_rng([seed, chunk]))
+        for chunk in runs
+    ]
+    return {
+        "mean": np.array([one.mean(axis=0) for one in found]),
+        "square": np.array([(one**2).mean(axis=0) for one in found]),
+    }
 
 
-def contents(rows):
-    """Return all parts, a line for each."""
-    parts = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
-    lines = ",\n".join("    " + json.dumps(row) for row in rows)
-    parts.append(f'  "parts": [\n{lines}\n  ]')
-    return ["{\n" + ",\n".join(parts) + "\n}\n"]
+def contents(found):
+    """Return all chunks, a line for each."""
+    text = [f'  "{name}": {json.dumps(value)}' for name, value in PARAMETERS.items()]
+    lines = [
+        json.dumps(
+            settings
+            | {"chunk": chunk}
+            | {name: moments[chunk].round(5).tolist() for name, moments in part.items()}
+        )
+        for (settings, *_), part in zip(parts(), found, strict=True)
+        for chunk in range(PARAMETERS["chunks"])
+    ]
+    text.append('  "parts": [\n' + ",\n".join("    " + line for line in lines) + "\n  ]")
+    return ["{\n" + ",\n".join(text) + "\n}\n"]

@@ -5,7 +5,8 @@ many runs fail, in steps of 1 dB around the threshold, and a sweep over what the
 open.
 """
 
-import sys
+from functools import cache
+from itertools import product
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from dopplerlib.systems.valarmathi import fusion_study as made
 from dopplerlib.systems.valarmathi import fusion_sweep as swept
 from dopplerlib.systems.valarmathi.error_measures import MEASURES
 from dopplerlib.systems.valarmathi.velocity_paths import PATHS
+from studies._rows import rows, texts
 
 FILES = (".errors.csv", ".threshold.csv", ".sweep.csv")
 PARAMETERS = {
@@ -31,26 +33,39 @@ HEADS = (
 )
 
 
-def items():
-    """Return the cells of all files: which file, path, and signal-to-noise ratio."""
-    levels = PARAMETERS["snrs_db"], PARAMETERS["threshold_snrs_db"]
-    cells = [(file, name, snr_db) for file in (0, 1) for name in PATHS for snr_db in levels[file]]
-    return cells + [(2, path, snr_db) for path in swept.PATHS for snr_db in swept.SNRS_DB]
+def parts():
+    """Return the files, of which a run is a cell."""
+    return [({"file": file}, len(cells(file)), 1) for file in range(len(FILES))]
 
 
-def rows(items):
-    """Yield the lines of each cell, and the file that they belong to."""
-    print("the table of windows ...", file=sys.stderr)
-    table = made.study_table()
+def cells(file):
+    """Return path and signal-to-noise ratio of each cell of a file."""
+    if file == 2:
+        return list(product(swept.PATHS, swept.SNRS_DB))
+    return list(product(PATHS, PARAMETERS["threshold_snrs_db" if file else "snrs_db"]))
+
+
+def compute(settings, seed, runs):
+    """Return the lines of some cells of a file."""
+    file = settings["file"]
+    return texts(lines(file, *cells(file)[run]) for run in runs)
+
+
+@cache
+def table():
+    """Return the table of windows, which takes some seconds."""
+    return made.study_table()
+
+
+def lines(file, name, snr_db):
+    """Return the lines of a cell."""
+    if file == 2:
+        cell = swept.sweep_cell(name, snr_db, table(), PARAMETERS["sweep_runs"])
+        return sweep_rows(name, snr_db, cell)
     runs, rows_of = (PARAMETERS["runs"], PARAMETERS["threshold_runs"]), (error_rows, failure_rows)
-    for file, name, snr_db in items:
-        if file == 2:
-            cell = swept.sweep_cell(name, snr_db, table, PARAMETERS["sweep_runs"])
-            yield file, sweep_rows(name, snr_db, cell)
-            continue
-        measures = made.cell_measures(made.study_cell(name, snr_db, table, runs[file]))
-        where = [PATHS.index(name) + 1, f"{snr_db:g}"]
-        yield file, [",".join(map(str, [*where, *row])) for row in rows_of[file](measures)]
+    measures = made.cell_measures(made.study_cell(name, snr_db, table(), runs[file]))
+    where = [PATHS.index(name) + 1, f"{snr_db:g}"]
+    return [",".join(map(str, [*where, *row])) for row in rows_of[file](measures)]
 
 
 def error_rows(measures):
@@ -87,8 +102,8 @@ def sweep_rows(path, snr_db, cell):
     return lines
 
 
-def contents(rows):
+def contents(found):
     """Return the tables."""
-    for number, head in enumerate(HEADS):
-        body = [line for file, lines in rows if file == number for line in lines]
+    for head, part in zip(HEADS, found, strict=True):
+        body = [line for cell in rows(part) for line in cell]
         yield "\n".join([head, *body]) + "\n"

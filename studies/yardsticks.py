@@ -3,6 +3,8 @@
 Half a minute on one processor.
 """
 
+import numpy as np
+
 from dopplerlib.workspace.yardsticks import bank_errors
 from studies import exact_posterior
 
@@ -10,17 +12,16 @@ FILES = (".csv",)
 PARAMETERS = {name: exact_posterior.PARAMETERS[name] for name in ("seed", "cases", "runs", "chunk")}
 COLUMNS = "case,run,sample,nees,position,velocity,position_bound,velocity_bound"
 
-items = exact_posterior.items
+parts = exact_posterior.parts
 
 
-def rows(items):
-    """Yield the lines of each part."""
-    for case, first in items:
-        found = bank_errors(case, first, PARAMETERS["chunk"], seed=PARAMETERS["seed"])
-        found[1:] *= 1e3
-        yield exact_posterior.lines(case, first, found)
+def compute(settings, seed, runs):
+    """Return NEES, and errors and bounds in mm and mm/s of some runs, at all times."""
+    found = bank_errors(settings["case"], runs.start, len(runs), seed=seed)
+    found[1:] *= 1e3
+    return {"columns": np.moveaxis(found, 0, -1)}
 
 
-def contents(rows):
-    """Return a line for each run and time; errors and bounds in mm and mm/s."""
-    return ["\n".join([COLUMNS, *(line for part in rows for line in part)]) + "\n"]
+def contents(found):
+    """Return a line for each run and time."""
+    return ["\n".join([COLUMNS, *exact_posterior.lines(found)]) + "\n"]

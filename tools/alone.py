@@ -6,7 +6,7 @@ Without packages: the environment itself is made under this lock.
 import fcntl
 import os
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 
 @contextmanager
@@ -27,10 +27,13 @@ def alone(path, work):
         however it ends: nobody has to tidy up after a kill. A child that must not go on after the
         lock has gone inherits it (`pass_fds`).
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
     file = None
     while file is None:
-        file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        path.parent.mkdir(parents=True, exist_ok=True)  # the other one may remove it, too
+        with suppress(FileNotFoundError):
+            file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        if file is None:
+            continue
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

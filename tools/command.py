@@ -1,10 +1,12 @@
 """The frame of every command: what it is for, and how it ends."""
 
 import argparse
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
+import threading
 from contextlib import contextmanager, suppress
 
 GRACE = 2  # seconds for tidying up after an interruption
@@ -65,9 +67,15 @@ def end_at_once():
 
 
 def quiet_worker():
-    """Prepare a process of a pool: only the parent takes notice of an interruption."""
+    """Prepare a process of a pool: it ends with its parent, which alone is interrupted."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent():
+    multiprocessing.parent_process().join()
+    os._exit(1)
 
 
 def _interrupt(*_):

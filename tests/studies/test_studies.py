@@ -6,8 +6,9 @@ That the numbers come out again is tested beside the system that each study is a
 import json
 import sys
 import tomllib
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from importlib import import_module
-from types import ModuleType
+from types import ModuleType, NoneType
 
 import pytest
 
@@ -65,24 +66,23 @@ def test_an_unknown_study_is_named_with_those_that_there_are(capsys):
 
 @pytest.fixture
 def squares(monkeypatch):
-    """Return a study of squares that is interrupted at the item `stop`, and what it worked on."""
+    """Return a study of squares that is interrupted at the run `stop`, and what it worked on."""
     study = ModuleType("studies.squares")
     study.PARAMETERS, study.FILES = {"seed": 1, "levels": [0, 1, 2]}, (".a.json", ".b.bin")
-    study.worked, study.stop, study.closed = [], None, 0
+    study.worked, study.stop = [], None
 
-    def rows(items):
-        try:
-            for item in items:
-                if item == study.stop:
-                    raise KeyboardInterrupt
-                study.worked.append(item)
-                yield item**2
-        finally:
-            study.closed += 1
+    def compute(settings, seed, runs):
+        if study.stop in runs:
+            raise KeyboardInterrupt
+        study.worked += runs
+        return {"square": [settings["levels"][run] ** 2 + settings["more"] for run in runs]}
 
-    study.items = lambda: range(3)
-    study.rows = rows
-    study.contents = lambda rows: [json.dumps(rows), bytes(rows)]
+    study.parts = lambda: [({"more": 0}, 3, 1), ({"more": 10}, 2, 2)]
+    study.compute = compute
+    study.contents = lambda found: [
+        json.dumps(found[0]["square"].tolist()),
+        bytes(found[1]["square"]),
+    ]
     monkeypatch.setitem(sys.modules, "studies.squares", study)
     monkeypatch.setattr(command, "about", lambda name: "Squares.\n\nA second.")
     return study
@@ -91,19 +91,63 @@ def squares(monkeypatch):
 def test_a_study_writes_all_its_files_and_what_made_them(squares, tmp_path):
     command.run("squares", tmp_path)
     assert (tmp_path / "squares.a.json").read_text() == "[0, 1, 4]"
-    assert (tmp_path / "squares.b.bin").read_bytes() == bytes([0, 1, 4])
+    assert (tmp_path / "squares.b.bin").read_bytes()[::8] == bytes([10, 11])
     told = tomllib.loads((tmp_path / "squares.toml").read_text())
     assert told["parameters"] == squares.PARAMETERS
     assert len(list(tmp_path.iterdir())) == 3
 
 
-def test_an_interrupted_study_writes_nothing_and_goes_on(squares, tmp_path):
+def test_an_interrupted_study_writes_nothing_and_goes_on(squares, tmp_path, capsys):
     squares.stop = 2
     with pytest.raises(KeyboardInterrupt):
         command.run("squares", tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["squares.part"]
-    assert squares.closed == 1  # a pool of processes would have ended
     squares.stop = None
     command.run("squares", tmp_path)
-    assert squares.worked == [0, 1, 2]
+    assert squares.worked == [0, 1, 2, 0, 1]
     assert (tmp_path / "squares.a.json").read_text() == "[0, 1, 4]"
+    assert "squares 1/2 [" in capsys.readouterr().err
+
+
+def test_a_failure_while_the_files_are_written_loses_no_run(squares, tmp_path):
+    (tmp_path / "squares.b.bin").mkdir()  # cannot be written to
+    with pytest.raises(ValueError, match="path must be"):
+        command.run("squares", tmp_path)
+    (tmp_path / "squares.b.bin").rmdir()
+    command.run("squares", tmp_path)
+    assert squares.worked == [0, 1, 2, 0, 1]
+
+
+def test_other_parameters_are_refused_with_the_folder_that_is_in_the_way(squares, tmp_path):
+    squares.stop = 2
+    with pytest.raises(KeyboardInterrupt):
+        command.run("squares", tmp_path)
+    squares.PARAMETERS["seed"] = 2
+    with pytest.raises(ValueError, match="seed differ; remove it to begin anew") as error:
+        command.run("squares", tmp_path)
+    assert str(tmp_path / "squares.part") in str(error.value)
+
+
+def test_of_two_at_once_one_waits_for_the_other(squares, tmp_path):
+    with ThreadPoolExecutor(2) as two:
+        for one in [two.submit(command.run, "squares", tmp_path) for _ in range(2)]:
+            one.result()
+    assert squares.worked == 2 * [0, 1, 2, 0, 1]
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind"),
+    [([], NoneType), (["--workers", "1"], NoneType), (["--workers", "2"], ProcessPoolExecutor)],
+)
+def test_workers_are_processes(arguments, kind, monkeypatch):
+    ran = []
+    monkeypatch.setattr(command, "run", lambda name, executor: ran.append((name, type(executor))))
+    command.main(["stopping", *arguments])
+    assert ran == [("stopping", kind)]
+
+
+def test_a_cluster_without_dask_names_the_command_that_installs_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ModuleNotFoundError, match=r'pip install "dopplerlib\[cluster\]"'):
+        command.main(["stopping", "--scheduler", "tcp://localhost:1"])

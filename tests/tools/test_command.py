@@ -72,3 +72,27 @@ def test_a_disk_that_cannot_be_written_is_named_in_one_line(tmp_path):
     ended = subprocess.run([sys.executable, "-c", code, tmp_path], capture_output=True, text=True)
     assert ended.returncode == 1
     assert ended.stderr == f"\nerror: No such file or directory: {tmp_path}/no/a\n"
+
+
+POOL = """
+import os, time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from tools.command import quiet_worker
+
+with ProcessPoolExecutor(1, get_context("spawn"), quiet_worker) as pool:
+    print(pool.submit(os.getpid).result(), flush=True)
+    time.sleep(60)
+"""
+
+
+def test_a_worker_ends_with_its_parent_even_if_that_is_killed():
+    command = [sys.executable, "-c", POOL]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        worker = int(process.stdout.readline())
+        process.kill()
+    for _ in range(100):
+        if not Path(f"/proc/{worker}").exists():
+            break
+        time.sleep(0.1)
+    assert not Path(f"/proc/{worker}").exists()

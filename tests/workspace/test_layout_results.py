@@ -63,7 +63,7 @@ def test_numbers_of_the_comparison_come_out_again(kind):
     }[kind]
     place = [each for each in layout_tracks.items() if each[0] == kind].index(item)
     expected = read_json("layout_tracks.json", folder=results)[kind][place]
-    (row,) = layout_tracks.rows([item])
+    row = layout_tracks.row(*item)
     assert row.keys() == expected.keys()
     for key, value in row.items():
         if isinstance(value, list):

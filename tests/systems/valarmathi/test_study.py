@@ -120,7 +120,9 @@ def test_either_file_has_its_cells_in_the_order_of_paths_and_ratios(monkeypatch)
     monkeypatch.setattr(tool, "sweep_rows", lambda name, snr_db, cell: [f"{cell}"])
     parameters = {"snrs_db": [0.0, 5.0], "threshold_snrs_db": [-1.5]}
     monkeypatch.setattr(tool, "PARAMETERS", tool.PARAMETERS | parameters)
-    errors, failures, swept = tool.contents(list(tool.rows(tool.items())))
+    errors, failures, swept = tool.contents(
+        [tool.compute(settings, 1, range(runs)) for settings, runs, _ in tool.parts()]
+    )
     assert errors.splitlines() == [
         tool.HEADS[0],
         *(f"{path},{snr_db},errors,{made.RUNS}" for path in (1, 2, 3) for snr_db in (0, 5)),
