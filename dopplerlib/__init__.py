@@ -29,6 +29,7 @@ _HOME = by_name(
         "estimation.linear_kalman": "kf kf_predict kf_update",
         "estimation.extended_update": "ekf_update",
         "estimation.nonlinear_kalman": "ekf_records ukf",
+        "estimation.online": "ekf_online ekf_records_online ukf_online",
         "estimation.imm": "imm imm_start imm_step",
         "estimation.imm_records": "ImmModel",
         "estimation.smoother": "rts_smooth",

@@ -29,6 +29,9 @@ from .estimation.linear_kalman import kf_update as kf_update
 from .estimation.maximum_likelihood import ml_initialize as ml_initialize
 from .estimation.nonlinear_kalman import ekf_records as ekf_records
 from .estimation.nonlinear_kalman import ukf as ukf
+from .estimation.online import ekf_online as ekf_online
+from .estimation.online import ekf_records_online as ekf_records_online
+from .estimation.online import ukf_online as ukf_online
 from .estimation.smoother import rts_smooth as rts_smooth
 from .estimation.steady_state import steady_state_gain as steady_state_gain
 from .estimation.steady_state import steady_state_lag as steady_state_lag
@@ -94,7 +97,9 @@ __all__ = [
     "doppler_shift",
     "effective_samples",
     "ekf",
+    "ekf_online",
     "ekf_records",
+    "ekf_records_online",
     "ekf_update",
     "fisher_information",
     "gate_bounds",
@@ -126,5 +131,6 @@ __all__ = [
     "steady_state_lag",
     "track_iq",
     "ukf",
+    "ukf_online",
 ]
 __version__: str

@@ -20,6 +20,7 @@ from dopplerlib.estimation import (
     linear_kalman,
     maximum_likelihood,
     nonlinear_kalman,
+    online,
     radial_velocity,
     robust_kalman,
     smoother,
@@ -36,6 +37,7 @@ from tests.fuzz.targets import example_calls
 K, n, m = 4, 2, 1
 F, Q = ncv_transition(0.5, dim=1), cwna_process_noise(0.5, 0.3, dim=1)
 H, R = np.array([[1.0, 0.2]]), np.array([[0.4]])
+H3, three = np.array([[1.0, 0.2], [0.3, 1.0], [1.0, -1.0]]), 0.4 * np.eye(3)
 x, P = np.array([1.0, -0.5]), np.array([[2.0, 0.3], [0.3, 1.0]])
 z = np.array([[0.5], [0.1], [-0.4], [0.2]])
 array, state = RadarArray.linear(5, 0.4), [0.5, 0.2, 0.0, -1.0, 0.5, 0.0]
@@ -63,6 +65,20 @@ CALLS = {
     } | nonlinear,
     nonlinear_kalman.ukf: {
         "z": z, "f": lambda x: x @ F.T, "Q": Q, "h": nonlinear["h"], "R": R, "x0": x, "P0": P,
+        "points": "unscented", "alpha": 0.5, "beta": 2.0, "kappa": 0.5,
+        "wrap": (0,), "gate": "upper", "gate_probability": 0.9, "iterations": 2,
+    },
+    online.ekf_online: {
+        "array": RadarArray.ring(3, 0.2), "x0": state, "P0": 0.01 * np.eye(6), "T": 0.001,
+        "sigma_a": 0.4, "sigma_f": 0.4, "keep": ("P", "S", "innovation"),
+    },
+    online.ekf_records_online: {
+        "f": lambda x: x @ F.T, "F": lambda x: F, "Q": Q, "R": three, "x0": x, "P0": P,
+        "h": lambda x: x @ H3.T, "H": lambda x: H3,
+        "wrap": (0,), "gate": "upper", "gate_probability": 0.9, "iterations": 2,
+    },
+    online.ukf_online: {
+        "f": lambda x: x @ F.T, "Q": Q, "h": lambda x: x @ H3.T, "R": three, "x0": x, "P0": P,
         "points": "unscented", "alpha": 0.5, "beta": 2.0, "kappa": 0.5,
         "wrap": (0,), "gate": "upper", "gate_probability": 0.9, "iterations": 2,
     },

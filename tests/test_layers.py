@@ -15,6 +15,7 @@ ORDER = [
     "_checks",
     "_hints",
     "_compile",
+    "_straight",
     "_cholesky",
     "_progress",
     "_toml",

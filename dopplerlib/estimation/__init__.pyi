@@ -14,6 +14,7 @@ from . import linear_kalman as linear_kalman
 from . import maximum_likelihood as maximum_likelihood
 from . import models as models
 from . import nonlinear_kalman as nonlinear_kalman
+from . import online as online
 from . import radial_velocity as radial_velocity
 from . import recursion as recursion
 from . import ring_model as ring_model

@@ -4,12 +4,14 @@ import os
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
 from .. import _checks
 from .._hints import Index, Probability, between, checked
+from .._records import filled
 from .._typing import ArrayLike, FloatArray
 from ..model.doppler import check_clear_of_sensors
 from ..model.links import DopplerLinks, state_size
@@ -132,8 +134,7 @@ def ekf(
     n = state_size(_checks.instance("array", array, (RadarArray, DopplerLinks)))
     z = _measurements(z, array)
     T = _intervals(T, z.shape[-2])
-    G, sigma_a = dwna_gain(T, sigma_a, noise)
-    columns = np.ascontiguousarray(sigma_a * np.swapaxes(G, -1, -2))
+    columns = _noise_columns(T, sigma_a, noise)
     variance = _variance(sigma_f, z.shape[-2:])
     _checks.one_of("gate", gate, (None, "upper", "two-sided", "soft"))
     soft = gate == "soft"
@@ -155,14 +156,14 @@ def ekf(
         track = filter_general(z, array, x0, P0, motion, variance, bounds)
         return replace(track, **{name: None for name in _OPTIONAL if name not in keep})
     check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
-    z, x0, P0 = (
-        np.ascontiguousarray(value).reshape(runs, *value.shape[len(batch) :])
-        for value in (z, x0, P0)
-    )
     # Whether an array may be written to is part of its type: numba would compile the loop again
-    # for every mixture, 5 s each.
-    for value in (z, variance, T, columns, x0, P0):
-        value.flags.writeable = False
+    # for every mixture, 2 s each.
+    # Whether an array may be written to is part of its type: numba would compile the loop again
+    # for every mixture, 2 s each.
+    inputs = [np.ascontiguousarray(v).reshape(-1) for v in (z, variance, T, columns, x0, P0)]
+    for value in inputs:
+        value.setflags(write=False)
+    z, variance, T, noise_columns, x0, P0 = inputs
     shapes = {
         "x": (6,), "P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors), "nis": (),
     }  # fmt: skip
@@ -174,28 +175,34 @@ def ekf(
     out["updated"] = np.empty((runs, samples), bool)
 
     # Here, and not above, so that importing the library does not load numba.
-    from ._ekf_loop import LANES, compiled
+    from ._ekf_loop import LANES, compiled, new_memory
 
     lanes = LANES if runs >= LANES else 1
+    each = samples * sensors, 6, 36
 
-    def part(rows):
-        results = [value[rows] for value in out.values()]
+    def part(first, last):
+        memory = new_memory(lanes, array.positions, array.doppler_per_speed, lower, upper)
+        own = [v[first * n : last * n] for v, n in zip((z, x0, P0), each, strict=True)]
+        results = [value[first:last].reshape(-1) for value in out.values()]
         compiled(lanes)(
-            z[rows], array.positions, array.doppler_per_speed, variance, T, columns, x0[rows],
-            P0[rows], lower, upper, *results,
+            memory, own[0], sensors, samples, T, noise_columns, columns.shape[-2], variance,
+            *own[1:], *results,
         )  # fmt: skip
 
     if runs <= lanes:
-        part(slice(None))
+        part(0, runs)
     else:
         workers = workers or os.cpu_count() or 1
         with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(part, _slices(runs, lanes, workers)))
-    return Track(
+            list(pool.map(part, *_parts(runs, lanes, workers)))
+    for value in out.values():
+        value.setflags(write=False)
+    return filled(
+        Track,
         **{
             name: value.reshape(*batch, *value.shape[1:]) if wanted.get(name, True) else None
             for name, value in out.items()
-        }
+        },
     )
 
 
@@ -232,6 +239,12 @@ def gate_bounds(
     """
     if sensors > 10**6:  # 8 MB
         raise ValueError(f"sensors must be at most a million, got {sensors}")
+    lower, upper = _bounds(gate, sensors, gate_probability)
+    return lower.copy(), upper.copy()
+
+
+@lru_cache
+def _bounds(gate, sensors, gate_probability):
     lower = np.full(sensors + 1, -np.inf)
     upper = np.full(sensors + 1, np.inf)
     if gate is not None:
@@ -250,7 +263,7 @@ def _measurements(z, array):
     _checks.check_shape("z", z, (None, len(array)))
     if not z.size:
         raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
-    if np.isinf(z).any():
+    if not _checks.all_finite(z) and np.isinf(z).any():
         place = tuple(int(i) for i in np.argwhere(np.isinf(z))[0])
         raise ValueError(
             f"z must be finite, or NaN where a sensor is missing, got {z[place]} at index {place}"
@@ -260,7 +273,25 @@ def _measurements(z, array):
 
 def _clock_noise(there, **sigmas):
     """Return the process noise of the clocks; without any it has to be zero."""
+    if all(type(value) is float and value == 0 for value in sigmas.values()):
+        return list(sigmas.values())
     return [between(0, 1e60 if there else 0)(name, value) for name, value in sigmas.items()]
+
+
+def _noise_columns(T, sigma_a, noise):
+    """Return the columns of sigma_a G, (K or 1, C, 6), for the noise of each interval."""
+    if len(T) == 1 and type(sigma_a) is float and isinstance(noise, str):
+        return _columns_of_one(float(T[0]), sigma_a, noise)
+    G, sigma_a = dwna_gain(T, sigma_a, noise)
+    return np.ascontiguousarray(sigma_a * np.swapaxes(G, -1, -2))
+
+
+@lru_cache
+def _columns_of_one(T, sigma_a, noise):
+    G, sigma_a = dwna_gain(np.array([T]), sigma_a, noise)
+    columns = np.ascontiguousarray(sigma_a * np.swapaxes(G, -1, -2))
+    columns.setflags(write=False)
+    return columns
 
 
 def _intervals(T, samples):
@@ -276,6 +307,8 @@ def _intervals(T, samples):
 
 
 def _variance(sigma_f, shape):
+    if type(sigma_f) is float:  # a shorter way to the same
+        return np.full(shape, _checks.one_number("sigma_f", sigma_f, _checks.deviation) ** 2)
     sigma_f = _checks.deviation("sigma_f", sigma_f)
     try:
         return np.ascontiguousarray(np.broadcast_to(sigma_f**2, shape))
@@ -285,8 +318,8 @@ def _variance(sigma_f, shape):
         ) from None
 
 
-def _slices(runs, lanes, workers):
-    """Return at most `workers` slices of whole groups of lanes."""
+def _parts(runs, lanes, workers):
+    """Return where at most `workers` parts begin and where they end, in whole groups of lanes."""
     groups = -(-runs // lanes)
     size = lanes * -(-groups // workers)
-    return [slice(first, first + size) for first in range(0, runs, size)]
+    return range(0, runs, size), [min(first + size, runs) for first in range(0, runs, size)]

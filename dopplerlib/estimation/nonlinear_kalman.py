@@ -217,19 +217,26 @@ def ukf(
     [2.07, 1.97, 1.99]
     """
     z, Q, R, x, P, wrap, bounds = _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability)
+    shape = points, alpha, beta, kappa
+    motion, measurement = _sampled(z, f, h, Q, R, x, shape, wrap, iterations)
+    times, axis = range(z.shape[-2]), z.ndim - 2
+    track = recursion.filter_records(x, P, motion, measurement, times, axis, bounds)
+    return recursion.finite("z, f, Q, h, R, x0, P0", track)
+
+
+def _sampled(z, f, h, Q, R, x, shape, wrap, iterations):
+    """Return prediction and correction by sigma points of a shape, which is checked."""
     iterations = _checks.count("iterations", iterations, 100)
     batch, (K, m), n = z.shape[:-2], z.shape[-2:], x.shape[-1]
+    points, *spread = shape
     _checks.one_of("points", points, ("cubature", "unscented"))
-    scale = sigma_points.scaling(n, alpha, beta, kappa)
+    scale = sigma_points.scaling(n, *spread)
     if points == "cubature":
         scale = sigma_points.scaling(n)
     many = (*batch, 2 * n + 1)
     f, h = each("f", f, K, (many, (n,))), each("h", h, K, (many, (m,)))
-
     motion = models.sampled_motion(f, Q, scale)
-    measurement = models.sampled_measurement(z, h, R, scale, wrap, iterations)
-    track = recursion.filter_records(x, P, motion, measurement, range(K), len(batch), bounds)
-    return recursion.finite("z, f, Q, h, R, x0, P0", track)
+    return motion, models.sampled_measurement(z, h, R, scale, wrap, iterations)
 
 
 def _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability):

@@ -92,9 +92,20 @@ def filter_records(
     Estimates x (..., n) and covariances P (..., n, n) one step before the first sample; P has
     leading axes of length one if the runs share it. For `times` and `axis` see `scan`.
     """
-    x, P, innovation, S, *gated = scan(
-        lambda k, state: cycle(k, state, predict, correct, bounds), (x, P), times, axis
-    )
+    outputs = scan(lambda k, state: cycle(k, state, predict, correct, bounds), (x, P), times, axis)
+    return _track(*outputs)
+
+
+def filter_sample(
+    state: tuple[FloatArray, FloatArray], predict: Predict, correct: Correct, bounds: Bounds | None
+) -> tuple[tuple[FloatArray, FloatArray], Track]:
+    """Apply `cycle` to the sample 0; return the state after it, and its track without a time."""
+    state, outputs = cycle(0, state, predict, correct, bounds)
+    return state, _track(*outputs)
+
+
+def _track(x, P, innovation, S, *gated):
+    """Return the track of outputs of `cycle`; without a gate NIS is computed here."""
     if not gated:
         gated = [densities.quadratic_form(innovation, S), _count(innovation) > 0]
     runs = x.shape[:-1]
