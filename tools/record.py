@@ -171,14 +171,14 @@ Seeds are the arguments of `numpy.random.default_rng` in its cells.
 ## {SEEDS}
 
 A verdict stands only if it stands for every reasonable value of our choices, and for every reading
-of the text. `data/<document>/choices.toml` declares these values, each with a date and a reason that
-does not depend on the result. If they change the verdict of a row, the row names the value.
+of the text. `data/<document>/choices.toml` declares these values, each with a date and a reason
+that does not depend on the result. If they change the verdict of a row, the row names the value.
 
 Random results change with the seed, but verdicts should not. No limit is moved to achieve this: if
 there are too few runs, the verdict on the page is *undecided*. A verdict is decided only if it also
-holds on an interval of twice the width of the 95 % interval. `make record` draws the noise for every
-claim again with five other seeds. It fails if a verdict changes into another one; the last column
-names the verdicts that are undecided with some seeds and decided with others.
+holds on an interval of twice the width of the 95 % interval. `make record` draws the noise for
+every claim again with five other seeds. It fails if a verdict changes into another one; the last
+column names the verdicts that are undecided with some seeds and decided with others.
 
 {table(("document", "seed", *VERDICTS, "undecided with one of the two seeds only"), rows)}
 
