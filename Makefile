@@ -138,7 +138,8 @@ clean:  ## remove everything that the other targets made
 
 # One lock for every platform and every Python from 3.11 on, without the address of an index.
 LOCK_OPTIONS := --quiet --upgrade --universal --fork-strategy fewest --python-version 3.11 \
-	--generate-hashes --no-annotate --no-header --no-emit-index-url
+	--generate-hashes --no-annotate --no-header --no-emit-index-url \
+	$(addprefix --no-emit-package ,playwright greenlet pyee) # what axe-playwright-python drives
 
 # The packages of the tests themselves are no question of the oldest ones.
 TESTED_WITH := hypothesis|ipykernel|nbformat|nbval|pytest|pytest-xdist|pyyaml|setuptools

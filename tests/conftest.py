@@ -32,14 +32,19 @@ def built_book():
 
 
 def pytest_collection_modifyitems(items):
-    """Begin with the long files, and end with those that look at the built book."""
+    """Begin with the long files, and end with those that look at the built book.
+
+    The browser takes longest of these, and does not come last.
+    """
     last = {item.path for item in items if "built_book" in getattr(item, "fixturenames", ())}
 
     def rank(item):
-        if item.path in last:
-            return 3
         if "wheel" in item.path.parts:
             return 0
-        return 1 if item.path.suffix == ".ipynb" else 2
+        if item.path.suffix == ".ipynb":
+            return 1
+        if item.path in last:
+            return 2 if "browser" in item.path.parts else 4
+        return 3
 
     items.sort(key=rank)

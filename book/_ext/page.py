@@ -1,11 +1,13 @@
 """What a page has around its text: description and picture for search engines and messages, ids.
 
 Also repairs of what stands below: an id that every exercise has again, heads of columns that are
-empty, roles of the bibliography that no screen reader understands.
+empty, roles of the bibliography that no screen reader understands; columns of words, which wrap and
+begin at the left, while those of numbers do neither.
 """
 
 import re
-from html import escape
+from html import escape, unescape
+from itertools import count
 from pathlib import Path
 
 from docutils import nodes
@@ -21,6 +23,10 @@ CITE = {
 }
 EMPTY_HEAD = re.compile(r"<th[^>]*>\s*(?:<p>\s*</p>)?\s*</th>")
 CELL = re.compile(r"(?<=<td>)[^<]+(?=</td>)")  # of a table that a cell prints
+RESULTS = re.compile(r'<table class="results">.*?</table>', re.S)
+ROW = re.compile(r"<tr>.*?</tr>", re.S)
+ENTRY = re.compile(r"<(?:td|th)(?=[ >])")
+PHRASE = re.compile(r"[^\W\d]\S* \S")  # begins with a word, and another one follows
 HYPHEN = re.compile(r"(?<![^\s(])-(?=\d)")
 PROSE = (nodes.paragraph, nodes.caption, nodes.emphasis, nodes.strong)
 ROLES = re.compile(r' role="(?:list|doc-biblioentry)"(?=[^>]*>)')
@@ -88,7 +94,22 @@ def repaired(body):
     """Return a page whose tables have no empty heads, and minuses; whose lists hold items."""
     body = EMPTY_HEAD.sub("<td></td>", body)
     body = CELL.sub(lambda m: HYPHEN.sub("\u2212", m[0]), body)
+    body = RESULTS.sub(lambda m: _phrases(m[0]), body)
     return ROLES.sub("", body) if "citation-list" in body else body
+
+
+def _phrases(table):
+    """Return a table of results whose columns with phrases say so in their class."""
+    rows = [re.findall(r"<td>(.*?)</td>", row, re.S) for row in ROW.findall(table)]
+    columns = {n for row in rows for n, cell in enumerate(row, 1) if PHRASE.match(unescape(cell))}
+
+    def marked(row):
+        place = count()
+        return ENTRY.sub(
+            lambda entry: entry[0] + ' class="phrase"' * (next(place) in columns), row[0]
+        )
+
+    return ROW.sub(marked, table) if columns else table
 
 
 def setup(app):

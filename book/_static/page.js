@@ -1,3 +1,6 @@
+// Pages that were opened as files may not fetch each other: the search shows no excerpts there.
+if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
+
 // Figures open at their full size: a click, or Enter; without this script, the address of the file.
 addEventListener("DOMContentLoaded", () => {
   const box = document.createElement("dialog");

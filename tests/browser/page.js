@@ -1,0 +1,109 @@
+// What a page is asked, whatever it shows: each function returns a list of complaints.
+window.book = (() => {
+  const name = (element) => {
+    const marks = [...element.classList].slice(0, 2).map((mark) => `.${mark}`);
+    const text = element.textContent.trim().replace(/\s+/g, " ").slice(0, 40);
+    return `${element.localName}${element.id && `#${element.id}`}${marks.join("")} "${text}"`;
+  };
+  const scrolls = (element) => getComputedStyle(element).overflowX !== "visible";
+
+  // Nothing reaches beyond the page, unless it scrolls in a box of its own.
+  function tooWide() {
+    const root = document.documentElement, width = root.clientWidth;
+    if (root.scrollWidth <= width) return [];
+    const inBox = (element) => {
+      for (let box = element.parentElement; box; box = box.parentElement) {
+        if (box !== document.body && box !== root && scrolls(box)) return true;
+      }
+      return false;
+    };
+    const wide = [...document.body.querySelectorAll("*")].filter((element) => {
+      const box = element.getBoundingClientRect();
+      return box.width && box.right > width + 1 && !inBox(element);
+    });
+    return [`scrolls sideways, ${root.scrollWidth} px: ${wide.slice(-3).map(name).join(", ")}`];
+  }
+
+  function broken() {
+    const found = [];
+    for (const image of document.querySelectorAll("img[src]")) {
+      if (!image.complete || !image.naturalWidth) found.push(`a picture is not shown: ${image.src}`);
+    }
+    for (const formula of document.querySelectorAll(".math")) {
+      if (!formula.querySelector("mjx-container svg")) found.push(`a formula is not set: ${name(formula)}`);
+    }
+    for (const wrong of document.querySelectorAll("[data-mml-node=merror]")) {
+      found.push(`a formula is wrong: ${wrong.textContent}`);
+    }
+    const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) {
+      const { data, parentElement } = texts.currentNode;
+      if (/\\[(\[]|\\begin\{|\\frac|\$[^$\n]+\$/.test(data)) {
+        if (!parentElement.closest("script, style, code, pre, mjx-container")) {
+          found.push(`a formula is left as text: ${name(parentElement)}`);
+        }
+      }
+    }
+    return found;
+  }
+
+  // What axe would look at again and again: glyphs, and tokens of code of a kind that was met.
+  function thin() {
+    const kinds = new Set();
+    for (const token of document.querySelectorAll(".highlight pre span:not(:has(*))")) {
+      if (kinds.has(token.className)) token.replaceWith(...token.childNodes);
+      kinds.add(token.className);
+    }
+    const formulas = "mjx-container > svg, mjx-container math";
+    for (const formula of document.querySelectorAll(formulas)) formula.replaceChildren();
+  }
+
+  // Marks one text for each look that is not known: all others of its color, size and weight on its
+  // background have its contrast. Returns the looks that are new.
+  function mark(known) {
+    for (const marked of document.querySelectorAll("[data-look]")) marked.removeAttribute("data-look");
+    const grounds = new Map([[null, ""]]);
+    const ground = (element) => {
+      if (!grounds.has(element)) {
+        const { backgroundColor, backgroundImage, opacity } = getComputedStyle(element);
+        const below = ground(element.parentElement);
+        const own = `${backgroundColor} ${backgroundImage} ${opacity}`;
+        if (own === "rgba(0, 0, 0, 0) none 1") grounds.set(element, below);
+        else if (/^rgb\(.* none 1$/.test(own)) grounds.set(element, backgroundColor);
+        else grounds.set(element, `${below}|${own}`);
+      }
+      return grounds.get(element);
+    };
+    const old = new Set(known), found = [];
+    const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) {
+      const element = texts.currentNode.parentElement;
+      if (!texts.currentNode.data.trim() || !element.checkVisibility()) continue;
+      const { color, fontSize, fontWeight } = getComputedStyle(element);
+      const look = [color, fontSize, fontWeight, ground(element)].join(" ");
+      if (old.has(look)) continue;
+      old.add(look);
+      found.push(look);
+      element.dataset.look = "";
+    }
+    return found;
+  }
+
+  const impacts = ["serious", "critical"];
+  const heavy = (result) =>
+    result.violations
+      .filter(({ impact }) => impacts.includes(impact))
+      .flatMap(({ id, nodes }) => nodes.map((node) => {
+        const why = [...node.any, ...node.all, ...node.none].map(({ message }) => message);
+        return `axe: ${id}: ${node.target.join(" ")}: ${why.join("; ")}`;
+      }));
+  // What axe finds with the rules of these impacts, or with that of contrast alone.
+  const axeFinds = (contrastOnly) => {
+    axe.configure({ rules: [{ id: "color-contrast", selector: "[data-look]" }] });
+    const rules = axe._audit.rules.filter(({ enabled, impact }) => enabled && impacts.includes(impact));
+    const chosen = contrastOnly ? ["color-contrast"] : rules.map(({ id }) => id);
+    const options = { resultTypes: ["violations"], preload: false, performanceTimer: false };
+    return axe.run(document, { ...options, runOnly: chosen }).then(heavy);
+  };
+  return { tooWide, broken, thin, mark, axeFinds };
+})();
