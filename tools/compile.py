@@ -8,7 +8,7 @@ import gc
 
 import numpy as np
 
-from dopplerlib import RadarArray, doppler_shift, ekf, ml_frequency, ml_initialize
+from dopplerlib import RadarArray, doppler_shift, ekf, ekf_online, ml_frequency, ml_initialize
 from dopplerlib.estimation._ekf_loop import LANES
 from dopplerlib.estimation.gaussian_sum import gaussian_sum
 from dopplerlib.estimation.importance_sampling import importance_posterior
@@ -28,6 +28,7 @@ def main(argv=None):
     for runs in (1, LANES):
         z = np.zeros((runs, 2, 6))
         ekf(z, array, start, np.eye(6), 0.001, 1.0, 1.0)
+    ekf_online(array, start, np.eye(6), 0.001, 1.0, 1.0)(z[0, 0])
     ml_initialize(z, array, 1.0, 0.001, box)
     gaussian_sum(z[0], array, start, np.eye(6), 0.001, 1.0, 1.0)
     # Its prior holds the target of these shifts: without a state there is nothing to weigh.

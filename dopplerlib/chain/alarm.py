@@ -1,13 +1,16 @@
 """Alarm of a machine that has to stop before a target is too near."""
 
+from collections.abc import Callable
+from math import sqrt
 from typing import Annotated
 
 import numpy as np
 
 from .. import _checks
 from .._hints import Array, Booleans, Positive, Probability, Reals, checked, exactly
-from .._records import record
+from .._records import filled, record
 from .._typing import FloatArray
+from ..estimation.track import Track
 from .track import IqTrack
 
 
@@ -47,6 +50,28 @@ class StopAlarm:
     def first(self) -> FloatArray:
         """Time in s of the first alarm, shape (...); infinite where there is none."""
         return np.where(self.alarm, self.time, np.inf).min(axis=-1)
+
+
+@record
+class StopDecision:
+    """Distance to a point now, and whether it may be too small.
+
+    Attributes
+    ----------
+    distance, distance_std : float
+        Distance in m and its standard deviation.
+    alarm : bool
+        Whether the target may be too near, or the track holds no numbers.
+
+    Examples
+    --------
+    >>> StopDecision(0.5, 0.1, False).alarm
+    False
+    """
+
+    distance: float
+    distance_std: float
+    alarm: bool
 
 
 @checked
@@ -101,3 +126,61 @@ def stop_alarm(
     u = away / length[..., None]
     std = np.sqrt(np.einsum("...i,...ij,...j->...", u, P[..., :3, :3], u))
     return StopAlarm(time, length, std, length + ndtri(probability) * std <= distance)
+
+
+@checked
+def stop_alarm_online(
+    point: Annotated[FloatArray, exactly(3)], distance: Positive, probability: Probability = 1e-3
+) -> Callable[[Track], StopDecision]:
+    """Prepare the rule of `stop_alarm` for estimates that come one by one, from `ekf_online`.
+
+    Parameters
+    ----------
+    point : array_like, shape (3,)
+        Position in m that the target must not come near.
+    distance : float
+        Distance in m that is too near.
+    probability : float
+        The alarm is given as soon as the target is nearer with this probability.
+
+    Returns
+    -------
+    callable
+        A function that takes an estimate, a `Track` without the axis of time and with P, and
+        returns a `StopDecision`. It remembers nothing.
+
+    Notes
+    -----
+    As `stop_alarm`. A track that holds no numbers any more is an alarm: a machine that has lost its
+    tracker stops.
+
+    Examples
+    --------
+    >>> from dopplerlib import RadarArray, doppler_shift, ekf_online
+    >>> array, x = RadarArray.ring(6, 0.2), [0.8, 0.1, 0.1, -0.7, 0, 0]
+    >>> update = ekf_online(array, x, 1e-4 * np.eye(6), T=0.001, sigma_a=0.4, sigma_f=0.4)
+    >>> decide = stop_alarm_online([0, 0, 0], 0.75)
+    >>> decide(update(doppler_shift(x, array))).alarm
+    False
+    """
+    from scipy.special import ndtri
+
+    (p_x, p_y, p_z), quantile = point.tolist(), float(ndtri(probability))
+
+    def decide(found: Track) -> StopDecision:
+        """Decide from one estimate."""
+        x, y, z, *_ = found.x.tolist()  # numbers, of which there are too few for arrays
+        (xx, xy, xz, *_), (_, yy, yz, *_), (_, _, zz, *_), *_ = found.P.tolist()
+        x, y, z = x - p_x, y - p_y, z - p_z
+        length = sqrt(x * x + y * y + z * z)
+        square = x * (x * xx + 2 * (y * xy + z * xz)) + y * (y * yy + 2 * z * yz) + z * z * zz
+        std = sqrt(max(square, 0.0)) / length if length > 0 else 0.0
+        # Not a number fails the comparison.
+        return filled(
+            StopDecision,
+            distance=length,
+            distance_std=std,
+            alarm=not length + quantile * std > distance,
+        )
+
+    return decide

@@ -93,8 +93,8 @@ def ekf_online(
     >>> for _ in range(100):
     ...     x[:3] += 0.001 * x[3:]
     ...     found = update(doppler_shift(x, array))
-    >>> found.x.shape, found.P.shape, bool(found.updated), bool(found.P[0, 0] < 0.001)
-    ((6,), (6, 6), True, True)
+    >>> found.x.shape, found.P.shape, found.updated
+    ((6,), (6, 6), True)
     """
     N = len(_checks.instance("array", array, RadarArray))
     T = _checks.one_number("T", T, _checks.deviation)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dopplerlib.chain.alarm import stop_alarm
+from dopplerlib import RadarArray, Track, doppler_shift, ekf_online
+from dopplerlib.chain.alarm import stop_alarm, stop_alarm_online
 from dopplerlib.chain.setup import example
 from dopplerlib.chain.simulation import simulate_recording
 from dopplerlib.chain.track import IqTrack
@@ -53,3 +54,34 @@ def test_it_comes_before_the_target_does_in_a_room():
         alarm = stop_alarm(found, setup.point, setup.distance)
         near = time[np.linalg.norm(path - setup.point, axis=1) <= setup.distance][0]
         assert near - 0.1 < alarm.first < near + setup.window + 1e-9
+
+
+def test_estimates_that_come_one_by_one_are_decided_alike():
+    rng = np.random.default_rng(3)
+    found = straight(0.1)
+    away = [0.4, -0.3, 0.2]
+    P = rng.normal(size=(1, 21, 6, 6)) / 10
+    found = IqTrack(**{**vars(found), "P": P @ P.mT})
+    alarm, decide = stop_alarm(found, away, 0.75), stop_alarm_online(away, 0.75)
+    _, x, P = found.live
+    for k in range(len(alarm.time)):
+        one = decide(Track(x[k], P[k], None, None, 0.0, True))
+        assert one.alarm == alarm.alarm[k]
+        assert one.distance == pytest.approx(alarm.distance[k], rel=1e-12)  # rounding
+        assert one.distance_std == pytest.approx(alarm.distance_std[k], rel=1e-12)
+
+
+def test_a_track_without_numbers_is_an_alarm():
+    x = np.full(6, np.nan)
+    assert stop_alarm_online([0, 0, 0], 0.1)(Track(x, np.eye(6), None, None, 0.0, True)).alarm
+
+
+def test_a_machine_stops_in_time():
+    """A target straight at the point: with errors of millimeters it stops within them."""
+    array, x = RadarArray.ring(6, 0.2), np.array([0.8, 0.0, 0.0, -0.7, 0.0, 0.0])
+    update = ekf_online(array, x, 1e-6 * np.eye(6), 0.001, 0.01, 0.1)
+    decide, rng, decision = stop_alarm_online([0, 0, 0], 0.5), np.random.default_rng(4), None
+    while decision is None or not decision.alarm:
+        x[:3] += 0.001 * x[3:]
+        decision = decide(update(doppler_shift(x, array) + 0.1 * rng.standard_normal(6)))
+    assert x[0] == pytest.approx(0.5, abs=0.02)
