@@ -28,6 +28,7 @@ def extension(name):
 
 
 page, words, equations = extension("page"), extension("words"), extension("equations")
+sooner = extension("sooner")
 
 
 def paragraph(text):
@@ -211,3 +212,18 @@ def test_colored_words_have_the_contrast_that_wcag_asks_of_text(background):
     colors = re.findall(r"--pst-color-(?:success|warning|danger|link): (#\w{6})", light)
     assert len(colors) == 4
     assert min(contrast(color, BACKGROUNDS[background]) for color in colors) >= 4.5
+
+
+def test_pages_of_source_share_navigation_by_their_depth():
+    app, made = SimpleNamespace(_navigation={}), []
+
+    def navigation(pagename, **options):
+        context = {"toctree": lambda **options: made.append((pagename, options)) or len(made)}
+        sooner.share_navigation(app, pagename, None, context, None)
+        return context["toctree"](**options)
+
+    deep, deeper = "_modules/dopplerlib/a", "_modules/dopplerlib/a/b"
+    assert [navigation(page, depth=1) for page in (deep, deeper, deep, deeper)] == [1, 2, 1, 2]
+    assert navigation("_modules/dopplerlib/c", depth=1) == 1
+    assert navigation("_modules/dopplerlib/c", depth=2) == 3
+    assert [navigation("tour", depth=1) for _ in range(2)] == [4, 5]

@@ -1,0 +1,34 @@
+"""Build the same pages sooner.
+
+Most pages are sources of modules. Their navigation leads to the same chapters, and none of its
+entries is the page itself: it differs only by the depth of the folder, and is made once for each.
+"""
+
+
+def share_navigation(app, pagename, template, context, doctree):
+    """Let pages of source that are as deep take over the navigation of the first of them."""
+    if not pagename.startswith("_modules/"):
+        return
+    make, depth = context["toctree"], pagename.count("/")
+
+    def shared(**options):
+        key = depth, *sorted(options.items())
+        if key not in app._navigation:
+            app._navigation[key] = make(**options)
+        return app._navigation[key]
+
+    context["toctree"] = shared
+
+
+def trust_templates(app):
+    """Do not look, each time that a template is used, whether its file has changed meanwhile."""
+    if app.builder.format == "html":
+        app.builder.templates.environment.auto_reload = False
+
+
+def setup(app):
+    """Register the extension with Sphinx."""
+    app._navigation = {}
+    app.connect("builder-inited", trust_templates)
+    app.connect("html-page-context", share_navigation, priority=400)  # before the theme asks
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
