@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from dopplerlib.workspace.comparison import ASSUMED, case_errors
+from dopplerlib.workspace.comparison import tracker_study
 from dopplerlib.workspace.errors import TrackErrors, error_summary
 
 FILES = (".json",)
@@ -65,10 +65,7 @@ def parts():
     ]
 
 
-def compute(settings, seed, runs):
-    """Return the errors of a tracker in some runs."""
-    case, tracker, assumed = (settings[name] for name in ("case", "tracker", "assumed"))
-    return vars(case_errors(case, tracker, runs.start, len(runs), seed=seed, **ASSUMED[assumed]))
+compute = tracker_study
 
 
 def row(settings, found):

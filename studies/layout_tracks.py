@@ -6,6 +6,7 @@ Twelve minutes on one processor. Targets are others than those over which layout
 import numpy as np
 
 from dopplerlib import RadarArray
+from dopplerlib.evaluation.monte_carlo import skip_runs
 from dopplerlib.evaluation.observability import observable_rank
 from dopplerlib.workspace._layout_tracks import track_layout
 from dopplerlib.workspace._solutions import same_shifts
@@ -128,10 +129,9 @@ def _quality(array, lost):
 
 def _track(array, case, chunk):
     """Return sums over runs, at four times, of squares and of what counts."""
-    truths, noise = np.random.default_rng(PARAMETERS["seed_tracks"]).spawn(2)
     runs = next(runs for name, _, runs in PARAMETERS["cases"] if name == case)
-    for source in (truths, noise):
-        source.spawn(chunk * runs)
+    streams = np.random.default_rng(PARAMETERS["seed_tracks"]).spawn(2)
+    truths, noise = (skip_runs(rng, chunk * runs) for rng in streams)
     x0 = _turned(TABLE_2, chunk * np.pi / 4) if case == "T" else None
     found = track_layout(array, runs, truths=truths, noise=noise, x0=x0)
     position, away, nees = (1e3 * found.position) ** 2, (1e3 * found.range) ** 2, found.nees

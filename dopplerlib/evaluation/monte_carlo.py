@@ -48,6 +48,35 @@ def run_rngs(seed: Index, runs: Iterable[Index]) -> list[np.random.Generator]:
 
 
 @checked
+def skip_runs(rng: np.random.Generator, first: Index) -> np.random.Generator:
+    """Return a generator whose next child is that of the run `first`, however far that is.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Whose child k is that of run k; it has no children yet, and is left as it is.
+    first : int
+        Number of the run.
+
+    Returns
+    -------
+    numpy.random.Generator
+        For functions that give each of their runs a child of `rng`.
+
+    Examples
+    --------
+    >>> rng = skip_runs(np.random.default_rng(1), 10_000_000)
+    >>> alone = run_rngs(1, [10_000_000])[0]
+    >>> float(rng.spawn(1)[0].normal()) == float(alone.normal())
+    True
+    """
+    own = rng.bit_generator.seed_seq
+    children = {"spawn_key": own.spawn_key, "pool_size": own.pool_size}
+    further = np.random.SeedSequence(own.entropy, **children, n_children_spawned=first)
+    return np.random.Generator(type(rng.bit_generator)(further))
+
+
+@checked
 def run_study(
     study: Callable[..., Any],
     settings: Any,

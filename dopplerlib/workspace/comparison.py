@@ -1,12 +1,16 @@
 """Trackers compared on the same records, in four cases, and results of a saved study."""
 
+from collections.abc import Iterable
 from dataclasses import fields
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from .. import _checks
 from .._data import read_json, results
 from .._hints import Count, Index, Positive, between, checked
+from .._typing import FloatArray
+from ..evaluation.monte_carlo import skip_runs
 from .errors import EVERY, ErrorSummary, TrackErrors, track_errors
 from .targets import (
     PRIOR_COVARIANCE,
@@ -80,9 +84,8 @@ def case_errors(
     (2, 50)
     """
     moved, x0 = CASES[case]
-    truths, noise, own = np.random.default_rng([seed, ord(case)]).spawn(3)
-    for rng in (truths, noise, own):
-        rng.spawn(first)
+    streams = np.random.default_rng([seed, ord(case)]).spawn(3)
+    truths, noise, own = (skip_runs(rng, first) for rng in streams)
     paths = draw_targets(runs, rng=truths, sigma_a=moved, x0=x0)
     z = draw_records(paths, rng=noise)
     assumed = moved if sigma_a is None else sigma_a
@@ -90,6 +93,40 @@ def case_errors(
         z, tracker, every=EVERY, sigma_a=assumed, sigma_f=sigma_f, prior=PRIORS[prior], rng=own
     )
     return track_errors(paths, x, P, sigma_a=moved, every=EVERY)
+
+
+@checked
+def tracker_study(
+    settings: dict[str, Any], seed: Index, runs: Iterable[Index]
+) -> dict[str, FloatArray]:
+    """Compute the errors of a tracker in some runs, as a study for `run_study`.
+
+    Parameters
+    ----------
+    settings : dict
+        The `case` and `tracker` of `case_errors`, and what the tracker `assumed`: "right", or
+        another of `ASSUMED`. Other entries are left alone.
+    seed : int
+        Source of all randomness.
+    runs : iterable of int
+        Numbers of the runs, one after the other.
+
+    Returns
+    -------
+    dict of ndarray
+        The fields of `TrackErrors`.
+
+    Examples
+    --------
+    >>> settings = {"case": "A", "tracker": "ekf", "assumed": "right"}
+    >>> tracker_study(settings, 1, range(2))["nees"].shape
+    (2, 50)
+    """
+    case, tracker, assumed = (settings.get(name) for name in ("case", "tracker", "assumed"))
+    given = ASSUMED[_checks.one_of("settings['assumed']", assumed, tuple(ASSUMED))]
+    if not runs or runs != tuple(range(runs[0], runs[0] + len(runs))):
+        raise ValueError(f"runs must be numbers one after the other, got {runs}")
+    return dict(vars(case_errors(case, tracker, runs[0], len(runs), seed=seed, **given)))
 
 
 def saved_comparison() -> dict[tuple[str, str, str], ErrorSummary]:

@@ -13,6 +13,7 @@ from ..estimation import covariances
 from ..estimation.importance_sampling import importance_posterior
 from ..evaluation.bootstrap import bootstrap_interval
 from ..evaluation.intervals import ConfidenceInterval
+from ..evaluation.monte_carlo import skip_runs
 from .comparison import CASES, EVERY, case_errors
 from .targets import (
     ARRAY,
@@ -61,15 +62,13 @@ def posterior_errors(
     (4, 1, 5)
     """
     sigma_a, x0 = CASES[case]
-    truths, noise = np.random.default_rng([seed, ord(case)]).spawn(2)  # as in `case_errors`
-    for rng in (truths, noise):
-        rng.spawn(first)
+    streams = np.random.default_rng([seed, ord(case)]).spawn(2)  # as in `case_errors`
+    truths, noise = (skip_runs(rng, first) for rng in streams)
     paths = draw_targets(runs, rng=truths, sigma_a=sigma_a, x0=x0, samples=SAMPLES[-1])
     z = draw_records(paths, rng=noise)
     found = np.full((4, runs, len(SAMPLES)), np.nan)
     for o, k in enumerate(SAMPLES):
-        rng = np.random.default_rng([seed, ord(case), k])
-        rng.spawn(first)
+        rng = skip_runs(np.random.default_rng([seed, ord(case), k]), first)
         posterior = importance_posterior(
             z[:, :k], ARRAY, PRIOR_MEAN, PRIOR_COVARIANCE, INTERVAL, sigma_a, SIGMA_F,
             rng=rng, draws=draws,

@@ -14,7 +14,7 @@ from scipy.stats import binom, t
 from dopplerlib.evaluation import _study_folder as kept
 from dopplerlib.evaluation import monte_carlo
 from dopplerlib.evaluation.intervals import mean_interval
-from dopplerlib.evaluation.monte_carlo import run_rngs, run_study
+from dopplerlib.evaluation.monte_carlo import run_rngs, run_study, skip_runs
 from tests.evaluation.killed_worker import draws, killed
 
 SETTINGS = {"mean": 2.0}
@@ -324,3 +324,18 @@ def test_an_interval_with_looks_covers_as_often_as_documented(first, draw, least
         stop = np.argmax((half < width) | (np.arange(len(half)) == len(half) - 1)[:, None], axis=0)
         inside = np.take_along_axis(error <= half, stop[None], axis=0)
         assert alarm[0] < inside.mean() < 0.96
+
+
+@pytest.mark.parametrize("kind", [np.random.PCG64, np.random.Philox])
+def test_skipped_runs_have_the_children_that_numpy_spawns(kind):
+    """Also those of a child, and without what the generator itself has drawn."""
+
+    def parent():
+        return np.random.Generator(kind([3, 7])).spawn(2)[1]
+
+    rng = parent()
+    rng.spawn(1000)
+    expected = [child.normal() for child in rng.spawn(3)]
+    skipped = skip_runs(parent(), 1000)
+    assert [child.normal() for child in skipped.spawn(3)] == expected
+    assert skipped.normal() == parent().normal()
