@@ -20,6 +20,8 @@ from pathlib import Path
 
 from jupyter_client.provisioning import LocalProvisioner
 
+from tools.command import parser
+
 ROOT = Path(__file__).resolve().parent.parent
 POLL = 0.01  # seconds
 
@@ -151,8 +153,9 @@ def answer(question):
     return pid
 
 
-def main():
+def main(argv=None):
     """Answer questions, one in a line, until nobody is left who asks."""
+    parser(__doc__).parse_args(argv)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     prepare()
     sys.path.remove(str(ROOT))  # a chapter has the library, not what tests it
