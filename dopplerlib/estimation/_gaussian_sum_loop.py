@@ -22,12 +22,14 @@ _BETWEEN = 2  # blocks from one merging to the next
 _ITERATIONS = 2  # of an update
 _MARGIN = 12.0  # by which a window may be less likely than the best, in logarithms
 _FEW = 20  # members, at most, that are fitted again to all scans
+_UNLIKE = 0.05  # Kullback-Leibler cost of a new fit, at most: a tenth in the mean squared distance
 
 
 @compiled
 def _cubature(x, P, T, r, mean, covariance, state, at, point, G, L):
     """Write mean and covariance of the state, `T` after one member; False if it has none."""
-    if np.isnan(factor(P, L)):
+    state_at(x, r, state, G)
+    if not state[0] > 0.0 or np.isnan(factor(P, L)):
         return False
     for i in range(6):
         mean[i] = 0.0
@@ -39,7 +41,6 @@ def _cubature(x, P, T, r, mean, covariance, state, at, point, G, L):
             point[i] = x[i] + sign * L[i, k // 2]
         state_at(point, r, at, G)
         if not at[0] > 0.0:  # a point in or behind the plane of the sensors stays in it
-            state_at(x, r, state, G)
             at[0], at[3] = 0.0, state[3]
         for i in range(3):
             at[i] += T * at[3 + i]
@@ -59,46 +60,48 @@ def moments(x, P, weight, count, T, noise, r, mean, covariance, shares, means, c
             state, G, L):  # fmt: skip
     """Write mean and covariance of the state, `T` after the members, and those of the heaviest.
 
-    `noise` (C, 6) has the columns of the noise of the state on the way; `shares` (M), `means`
-    (M, 6) and `covariances` (M, 6, 6) are those of the M heaviest members, as far as there are.
+    Return the number of members that have a state; the others do not count, and if there are none,
+    nothing is written. `noise` (C, 6) has the columns of the noise of the state on the way;
+    `shares` (M), `means` (M, 6) and `covariances` (M, 6, 6) are those of the M heaviest members,
+    as far as there are.
     """
-    rank = np.full(count, -1)
-    for place in range(min(len(shares), count)):
-        heaviest = -1
-        for m in range(count):
-            if rank[m] < 0 and (heaviest < 0 or weight[m] > weight[heaviest]):
-                heaviest = m
-        rank[heaviest] = place
+    own, own_P, share = np.empty((count, 6)), np.empty((count, 6, 6)), np.zeros(count)
+    at, point, total, there = np.empty(6), np.empty(6), 0.0, 0
+    for m in range(count):
+        if _cubature(x[m], P[m], T, r, own[m], own_P[m], state, at, point, G, L):
+            share[m] = np.exp(weight[m])
+            total += share[m]
+            there += 1
+    if not total > 0.0:
+        return 0
     for i in range(6):
         mean[i] = 0.0
         for j in range(6):
             covariance[i, j] = 0.0
-    own, own_P, at, point = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty(6)
-    total = 0.0
     for m in range(count):
-        if not _cubature(x[m], P[m], T, r, own, own_P, state, at, point, G, L):
-            continue
-        for column in noise:
+        share[m] /= total
+        if share[m] > 0.0:
+            for column in noise:
+                for i in range(6):
+                    for j in range(6):
+                        own_P[m, i, j] += column[i] * column[j]
             for i in range(6):
+                mean[i] += share[m] * own[m, i]
                 for j in range(6):
-                    own_P[i, j] += column[i] * column[j]
-        w = np.exp(weight[m])
-        total += w
-        for i in range(6):
-            mean[i] += w * own[i]
-            for j in range(6):
-                covariance[i, j] += w * (own_P[i, j] + own[i] * own[j])
-        if rank[m] >= 0:
-            shares[rank[m]] = w
-            put(means[rank[m]], own)
-            put_square(covariances[rank[m]], own_P)
-    for place in range(len(shares)):
-        shares[place] /= total
-    for i in range(6):
-        mean[i] /= total
+                    covariance[i, j] += share[m] * (own_P[m, i, j] + own[m, i] * own[m, j])
     for i in range(6):
         for j in range(6):
-            covariance[i, j] = covariance[i, j] / total - mean[i] * mean[j]
+            covariance[i, j] -= mean[i] * mean[j]
+    for place in range(min(len(shares), there)):
+        heaviest = 0
+        for m in range(count):
+            if share[m] > share[heaviest]:
+                heaviest = m
+        shares[place] = share[heaviest]
+        put(means[place], own[heaviest])
+        put_square(covariances[place], own_P[heaviest])
+        share[heaviest] = -1.0
+    return there
 
 
 @compiled
@@ -215,10 +218,11 @@ def _cached(compiled_in):
                 rest += inside
                 middles[s] = (taken - 0.5 * (length + 1)) * T
                 if blocks == 0:
-                    count = start(scans[s:s + 1], variances[s:s + 1], middles[s:s + 1], positions,
-                                  r, c, mean, information, setting.grid, setting.widths, least,
-                                  _MARGIN, x, P, weight)  # fmt: skip
-                    evidence = setting.share + constant
+                    start(scans[s:s + 1], variances[s:s + 1], middles[s:s + 1], positions, r, c,
+                          mean, information, setting.grid, setting.widths, setting.overlaps, least,
+                          _MARGIN, x, P, weight)  # fmt: skip
+                    count = len(weight)
+                    evidence = setting.prior + constant
                 else:
                     for m in range(count):
                         if weight[m] > LOST:
@@ -232,7 +236,7 @@ def _cached(compiled_in):
                 blocks += 1
                 if exact and settling <= blocks < len(scans) and count <= _FEW:
                     modes = settle(scans[:blocks], variances[:blocks], middles[:blocks], middles[s],
-                                   positions, r, c, mean, information, least, x, P, weight,
+                                   positions, r, c, mean, information, least, _UNLIKE, x, P, weight,
                                    count)  # fmt: skip
                     if modes > 0:
                         count, gained = drop(x, P, weight, modes, setting.lightest)
@@ -250,9 +254,12 @@ def _cached(compiled_in):
                 o, apart = k // every, _squares(last - 1) / last**2 + filled
                 ahead = (0.5 * (last - 1) + filled) * T
                 push = _columns(noise, apart, T)
-                moments(x, P, weight, count, ahead, push, r, out.x[o], out.P[o], out.weights[o],
-                        out.means[o], out.covariances[o], state, G, L)  # fmt: skip
-                out.members[o], out.evidence[o] = count, known
+                out.members[o] = moments(
+                    x, P, weight, count, ahead, push, r, out.x[o], out.P[o], out.weights[o],
+                    out.means[o], out.covariances[o], state, G, L,
+                )  # fmt: skip
+                if out.members[o] > 0:
+                    out.evidence[o] = known
         for i, value in enumerate((count, taken, blocks, filled, length, last, settling)):
             bank.numbers[i] = value
         for i, value in enumerate((evidence, constant, rest, known)):

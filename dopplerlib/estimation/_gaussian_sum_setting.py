@@ -8,12 +8,14 @@ from .. import _checks
 from ..kernels import ring_coordinates as kernel
 from ..model.motion import constant_velocity, dwna_gain, ncv_transition
 
-# Windows of the start: distance in units of 1 / radius (of eta) and in logarithms (of rho), and
+# Fine windows of the start: distance in units of 1 / radius (of eta), in logarithms (of rho), and
 # deviation of each window as a share of that distance, so that their sum is even to a percent.
 _ACROSS, _ALONG, _WIDTH = 0.04, 0.2, 0.71
 _DRAWN = 2**14  # points of the prior that say where windows are needed
-_COUNTED = 2**9  # of them, at which the sum of the windows is taken
-_COVERED = 0.99  # share of them that lie in windows
+_COUNTED = 2**10  # of those that spread more, at which the sum of the windows is taken
+_COVERED = 0.99  # share of them that lie in fine windows
+_COARSE, _TAIL = 3, 5.0  # size of the windows outside; as far as deviations of the prior
+_SPREAD = 2.0  # of the points that say where those are needed, in deviations
 _LEAST = 0.15  # of the radius: nearer to the sensors' plane, or the first of them, a member is lost
 _FLAT = 1e-9  # of the radius: so far off the plane a sensor is in it
 _SETTLING, _SCANS = 30, 512  # blocks of a target that goes straight at the first new fit, at most
@@ -32,9 +34,9 @@ class Setting(NamedTuple):
     mean: np.ndarray
     information: np.ndarray
     prior: float
-    share: float
     grid: np.ndarray
     widths: np.ndarray
+    overlaps: np.ndarray
     least: float
     lightest: float
     loss: float
@@ -95,14 +97,14 @@ def prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss, gate_probab
     mean, P = turn @ (F @ (x0 - frame.origin)), turn @ P @ turn.T
     _checks.estimates("x0, P0, T, sigma_a", mean, P)
     P = _checks.covariance("P0", (P + P.T) / 2, 6)
-    grid, widths, overlap = _windows(mean, P, radius, least)
+    grid, widths, overlaps = _windows(mean, P, radius, least)
     information = np.linalg.inv(P)
     prior = -0.5 * float(np.linalg.slogdet(P)[1])
     limit = np.inf if gate_probability is None else float(chdtri(1, 1 - gate_probability))
     return frame, Setting(
         np.ascontiguousarray(positions), radius, float(array.doppler_per_speed), float(T), block,
         columns, flat, mean, (information + information.T) / 2,
-        prior, prior - overlap, grid, widths, least, float(lightest), float(loss), limit,
+        prior, grid, widths, overlaps, least, float(lightest), float(loss), limit,
     )  # fmt: skip
 
 
@@ -164,31 +166,55 @@ def _frame(array, x0):
 
 
 def _windows(mean, P, radius, least):
-    """Return centers (W, 3) of eta and ln rho where the prior is, and widths of the windows.
+    """Return centers (W, 3) of eta and ln rho where the prior is, and the windows' widths (W, 3).
 
-    The third is the logarithm of the windows' sum in the mean over the prior.
+    The third (W,) is the logarithm of the sum of all windows, in the mean over each.
     """
     draws = np.random.default_rng(0).standard_normal((_DRAWN, 6))
-    states = mean + draws @ np.linalg.cholesky(P).T
-    states = states[states[:, 0] > least]
-    if not len(states):
+    root = np.linalg.cholesky(P)
+    seen = _seen(mean + draws @ root.T, radius, least)
+    if not len(seen):
         raise ValueError("P0 must leave states in front of the sensors, got none")
-    eta_y, eta_z, *_, rho = kernel.to_coordinates(*states.T, radius)
-    across = _ACROSS / radius
-    # A hexagonal lattice: rows sqrt(3) / 2 apart, each other one moved by half.
-    row = np.round(eta_z / (across * np.sqrt(3) / 2))
-    cells = np.stack(
-        [np.round(eta_y / across - 0.5 * (row % 2)), row, np.round(np.log(rho) / _ALONG)]
-    )
-    cells, drawn = np.unique(cells.T.astype(int), axis=0, return_counts=True)
+    cells, drawn = np.unique(_cells(seen, radius, 1), axis=0, return_counts=True)
     order = np.argsort(-drawn, kind="stable")
-    cells = cells[order][np.cumsum(drawn[order]) - drawn[order] < _COVERED * drawn.sum()]
-    i, j, k = cells.T
-    grid = np.stack(
-        [(i + 0.5 * (j % 2)) * across, j * across * np.sqrt(3) / 2, k * _ALONG], axis=-1
+    fine = cells[order][np.cumsum(drawn[order]) - drawn[order] < _COVERED * drawn.sum()]
+    # Outside, as far as the tail of the prior goes, a lattice whose cells are larger.
+    far = draws[np.sum(draws[:, :3] ** 2, axis=-1) < _TAIL**2 / _SPREAD**2]
+    far = _seen(mean + _SPREAD * far @ root.T, radius, least)
+    coarse = np.unique(_cells(far, radius, _COARSE), axis=0)
+    near = set(map(tuple, fine.tolist()))
+    centers = _centers(coarse, radius, _COARSE)
+    outside = [tuple(c) not in near for c in _cells(centers, radius, 1).tolist()]
+    grid = np.concatenate([_centers(fine, radius, 1), centers[outside]])
+    size = np.repeat([1, _COARSE], [len(fine), sum(outside)])
+    widths = size[:, None] * (_WIDTH * np.array([_ACROSS / radius, _ACROSS / radius, _ALONG]))
+    apart = (far[:_COUNTED, None] - grid) / widths
+    inside = np.exp(-0.5 * np.sum(apart * apart, axis=-1))
+    tiny = np.finfo(float).tiny  # for a window in which none of these points is
+    overlaps = (inside.sum(axis=-1) @ inside + tiny) / (inside.sum(axis=0) + tiny)
+    return grid, widths, np.log(overlaps)
+
+
+def _seen(states, radius, least):
+    """Return eta and ln rho (..., 3) of those states that are in front of the sensors."""
+    eta_y, eta_z, *_, rho = kernel.to_coordinates(*states[states[:, 0] > least].T, radius)
+    return np.stack([eta_y, eta_z, np.log(rho)], axis=-1)
+
+
+def _cells(points, radius, size):
+    """Return the cells (..., 3) of a lattice in which points of eta and ln rho are.
+
+    The lattice is hexagonal: rows sqrt(3) / 2 apart, each other one moved by half.
+    """
+    across = size * _ACROSS / radius
+    row = np.round(points[:, 1] / (across * np.sqrt(3) / 2))
+    column = np.round(points[:, 0] / across - 0.5 * (row % 2))
+    return np.stack([column, row, np.round(points[:, 2] / (size * _ALONG))], axis=-1).astype(int)
+
+
+def _centers(cells, radius, size):
+    """Return eta and ln rho (..., 3) in the middle of cells."""
+    across, (i, j, k) = size * _ACROSS / radius, cells.T
+    return np.stack(
+        [(i + 0.5 * (j % 2)) * across, j * across * np.sqrt(3) / 2, k * size * _ALONG], axis=-1
     )
-    widths = _WIDTH * np.array([across, across, _ALONG])
-    seen = np.stack([eta_y, eta_z, np.log(rho)], axis=-1)[:_COUNTED]
-    apart = (seen[:, None] - grid) / widths
-    total = np.exp(-0.5 * np.sum(apart * apart, axis=-1)).sum(axis=-1)
-    return grid, widths, float(np.log(total.mean()))

@@ -8,9 +8,10 @@ import numpy as np
 
 from .._cholesky import compiled, factor, solve
 from ..kernels import doppler as kernel
-from ._ring_member import LOST, inline, put, state_at
+from ._ring_member import LOST, inline, put, put_square, state_at
 
-_STEPS, _HALVINGS, _GAIN = 4, 5, 1e-2  # of a descent
+_STEPS, _FULL, _HALVINGS = 5, 30, 5  # of a descent in a window, of one to a mode
+_LEFT = 1e-2  # fall of a cost that is left to the last step
 _EQUAL = 0.1  # squared distance of two modes that are one, in deviations
 
 shift_in_space = inline(kernel.doppler_shift_and_gradient)
@@ -64,7 +65,7 @@ def objective(x, scans, variances, middles, now, positions, r, c, mean, informat
             for i in range(6):
                 scaled = w * row[i]
                 slope[i] += scaled * residual
-                for j in range(6):
+                for j in range(i + 1):
                     A[i, j] += scaled * row[j]
     age = now - middles[0]
     for i in range(3):
@@ -83,9 +84,11 @@ def objective(x, scans, variances, middles, now, positions, r, c, mean, informat
             near, cross = information[i, j], information[3 + i, j]
             A[i, j] += near
             A[3 + i, j] += cross - age * near
-            A[j, 3 + i] += cross - age * near
             A[3 + i, 3 + j] += information[3 + i, 3 + j]
             A[3 + i, 3 + j] += age * (age * near - cross - information[3 + j, i])
+    for i in range(6):
+        for j in range(i):
+            A[j, i] = A[i, j]
     g[0], g[1], g[2], g[3], g[4], g[5] = _pulled(
         G, slope[0], slope[1], slope[2], slope[3], slope[4], slope[5]
     )
@@ -110,21 +113,27 @@ def objective(x, scans, variances, middles, now, positions, r, c, mean, informat
 
 @compiled
 def _downhill(L, g, step):
-    """Write the step of Newton, -inv(L L') g, to `step`."""
+    """Write the step of Newton, -inv(L L') g, to `step`; return the fall that it promises."""
+    left = 0.0
     for i in range(6):
         step[i] = -g[i]
     solve(L, step)
+    for i in range(6):
+        left -= 0.5 * g[i] * step[i]
+    return left
 
 
 @compiled
-def _descend(x, cost, step, scans, variances, middles, now, positions, r, c, mean, information,
-             window, least, P, state, G, g, H, A, B, L, new):  # fmt: skip
-    """Move `x` to the mode nearby, write its covariance to `P`, and return Laplace's log weight.
+def _descend(x, cost, step, steps, scans, variances, middles, now, positions, r, c, mean,
+             information, window, least, P, state, G, g, H, A, B, L, new):  # fmt: skip
+    """Move `x` to the mode nearby, and write its covariance to `P`.
 
-    `cost` is that of `x`, and `step` the first one to try; with an infinite cost it has to be zero.
+    `cost` is that of `x`, and `step` the first one to try, of `steps` at most. Return Laplace's log
+    weight, the cost there, and what one more step of Newton promises, which says whether it is a
+    mode. `L` is the factor of the second derivatives.
     """
-    determinant = np.nan
-    for tried in range(_STEPS + 1):
+    determinant, left = np.nan, np.inf
+    for _ in range(steps):
         share = 1.0
         for _ in range(_HALVINGS):
             for i in range(6):
@@ -137,47 +146,54 @@ def _descend(x, cost, step, scans, variances, middles, now, positions, r, c, mea
         if not cost_new < cost:
             break
         put(x, new)
-        gain, cost = cost - cost_new, cost_new
+        cost = cost_new
         determinant = factor(H, L)
-        if np.isnan(determinant) or gain < _GAIN or tried == _STEPS:
+        if np.isnan(determinant):
             break
-        _downhill(L, g, step)
+        left = _downhill(L, g, step)
+        if left < _LEFT:  # so small a step keeps what it promises
+            for i in range(6):
+                x[i] += step[i]
+            cost -= left
+            break
     if np.isnan(determinant):
-        return LOST
+        return LOST, cost, np.inf
     for j in range(6):
         for i in range(6):
             step[i] = 1.0 if i == j else 0.0
         solve(L, step)
         put(P[j], step)
-    return -cost - 0.5 * determinant
+    return -cost - 0.5 * determinant, cost, left
 
 
 @compiled
-def start(scans, variances, middles, positions, r, c, mean, information, grid, widths, least,
-          margin, x, P, weight):  # fmt: skip
+def start(scans, variances, middles, positions, r, c, mean, information, grid, widths, overlaps,
+          least, margin, x, P, weight):  # fmt: skip
     """Fill the bank from one scan: in each window of the grid the mode, and Laplace's weight.
 
-    Return the number of windows that have a state. Those whose predicted weight is `margin` below
-    the best are left out.
+    Windows overlap: of each counts what is left when it is divided by the sum of all, `overlaps`.
+
+    Where there is no state, or none within `margin` of the best in logarithms, the weight is that
+    of a member that is lost.
     """
     state, G = np.empty(6), np.zeros((6, 6))
     g, H, L = np.empty(6), np.empty((6, 6)), np.zeros((6, 6))
     A, B = np.empty((6, 6)), np.empty((6, 6))
-    step, new = np.empty(6), np.empty(6)
-    window, now = np.empty((3, 2)), middles[0]
-    for i in range(3):
-        window[i, 1] = 1 / widths[i] ** 2
-    promised, best = np.empty(len(grid)), np.inf
+    step, new, window = np.empty(6), np.empty(6), np.empty((3, 2))
+    now, promised = middles[0], np.empty(len(grid))
+    m_y = m_z = b = 0.0
+    seen = False
     for w in range(len(grid)):
-        promised[w] = np.inf
+        promised[w], weight[w] = np.inf, LOST
         x[w, 0], x[w, 1], x[w, 5] = grid[w]
-        x[w, 2] = x[w, 3] = x[w, 4] = 0.0
-        put(window[:, 0], grid[w])
-        # First beta and b, in which the shifts are linear; then a step in all, not yet taken.
-        for linear in (True, False):
+        _look(window, grid[w], widths[w])
+        # beta and b, in which the shifts are linear, once: the same b and beta - b eta, which are
+        # well seen, nearly hold in each window. Then a step in all, not yet taken.
+        for linear in range(seen, 2):
+            x[w, 2], x[w, 3], x[w, 4] = m_y + b * x[w, 0], m_z + b * x[w, 1], b
             cost = objective(x[w], scans, variances, middles, now, positions, r, c, mean,
                              information, window, least, state, G, g, H, A, B)  # fmt: skip
-            if linear:
+            if linear == 0:
                 for i in (0, 1, 5):
                     for j in range(6):
                         H[i, j] = H[j, i] = 0.0
@@ -185,61 +201,110 @@ def start(scans, variances, middles, positions, r, c, mean, information, grid, w
                     g[i] = 0.0
             if not np.isfinite(cost) or np.isnan(factor(H, L)):
                 break
-            _downhill(L, g, step)
-            if linear:
-                for i in range(2, 5):
-                    x[w, i] += step[i]
+            left = _downhill(L, g, step)
+            if linear == 0:
+                b = step[4]
+                m_y, m_z, seen = step[2] - b * x[w, 0], step[3] - b * x[w, 1], True
             else:
-                promised[w] = weight[w] = cost
+                promised[w], P[w, 1, 0] = cost - left, cost
                 put(P[w, 0], step)
-                for i in range(6):
-                    promised[w] += 0.5 * g[i] * step[i]
-                best = min(best, promised[w])
-    count = 0
-    for w in range(len(grid)):
-        if not promised[w] < best + margin:
-            continue
-        put(window[:, 0], grid[w])
-        put(step, P[w, 0])
-        weight[count] = _descend(
-            x[w], weight[w], step, scans, variances, middles, now, positions, r, c, mean,
-            information, window, least, P[count], state, G, g, H, A, B, L, new,
-        )  # fmt: skip
-        if weight[count] > LOST:
-            put(x[count], x[w])
-            count += 1
-    return count
+    # What is likely, only what was reached says; the most promising are asked first, until none
+    # that is left promises more.
+    best, w, ahead = np.inf, 0, True
+    while w < len(grid):
+        v = w
+        if ahead:
+            for other in range(len(grid)):
+                if promised[other] < promised[v]:
+                    v = other
+            ahead = promised[v] < best
+        if promised[v] < best + margin:
+            promised[v] = np.inf
+            _look(window, grid[v], widths[v])
+            put(step, P[v, 0])
+            weight[v], reached, _ = _descend(
+                x[v], P[v, 1, 0], step, _STEPS, scans, variances, middles, now, positions, r, c,
+                mean, information, window, least, P[v], state, G, g, H, A, B, L, new,
+            )  # fmt: skip
+            weight[v] -= overlaps[v]
+            best = min(best, reached)
+        w += v == w
 
 
 @compiled
-def settle(scans, variances, middles, now, positions, r, c, mean, information, least, x, P, weight,
-           count):  # fmt: skip
+def _look(window, center, widths):
+    """Write center and inverse variance of a window (3, 2)."""
+    for i in range(3):
+        window[i, 0], window[i, 1] = center[i], 1 / widths[i] ** 2
+
+
+@compiled
+def settle(scans, variances, middles, now, positions, r, c, mean, information, least, unlike, x, P,
+           weight, count):  # fmt: skip
     """Move members to the modes of the posterior given all scans; return the number of modes.
 
-    The weight of a mode is Laplace's.
+    The weight of a mode is Laplace's. Where the members are, the Gaussians at the modes must have
+    the density of the posterior: if in the mean over the members its logarithm is more than
+    `unlike` too low, all stays as it is, and the return value is 0. In this mean a member counts
+    by that density and its own volume, not by the weight that it came with.
     """
     state, G = np.empty(6), np.zeros((6, 6))
     g, H, L = np.empty(6), np.empty((6, 6)), np.zeros((6, 6))
     A, B = np.empty((6, 6)), np.empty((6, 6))
     step, new, window = np.empty(6), np.empty(6), np.zeros((3, 2))
+    own, costs, logs = np.empty(count), np.empty(count), np.empty(count)
+    modes, shapes = np.empty((count, 6)), np.empty((count, 6, 6))
+    factors = np.zeros((count, 6, 6))
     kept = 0
     for m in range(count):
-        for i in range(6):
-            step[i] = 0.0
-        weight[kept] = _descend(
-            x[m], np.inf, step, scans, variances, middles, now, positions, r, c, mean,
-            information, window, least, P[kept], state, G, g, H, A, B, L, new,
+        own[m] = objective(x[m], scans, variances, middles, now, positions, r, c, mean,
+                           information, window, least, state, G, g, H, A, B)  # fmt: skip
+        if not np.isfinite(own[m]) or np.isnan(factor(H, L)):
+            continue
+        _downhill(L, g, step)
+        put(modes[kept], x[m])
+        logs[kept], costs[kept], left = _descend(
+            modes[kept], own[m], step, _FULL, scans, variances, middles, now, positions, r, c, mean,
+            information, window, least, shapes[kept], state, G, g, H, A, B, L, new,
         )  # fmt: skip
-        alone = weight[kept] > LOST
+        alone = left < _LEFT
         for j in range(kept):
-            distance = 0.0
-            for i in range(6):
-                s = 0.0
-                for k in range(i, 6):
-                    s += L[k, i] * (x[m, k] - x[j, k])
-                distance += s * s
-            alone = alone and distance > _EQUAL
+            alone = alone and _apart(L, modes[kept], modes[j]) > _EQUAL
         if alone:
-            put(x[kept], x[m])
+            put_square(factors[kept], L)
             kept += 1
+    if kept == 0:
+        return 0
+    top = logs[:kept].max()
+    whole = found = apart = 0.0
+    for j in range(kept):
+        whole += np.exp(logs[j] - top)
+    for m in range(count):
+        log = factor(P[m], L)
+        if not np.isfinite(own[m]) or np.isnan(log):
+            continue
+        nearest = np.inf
+        for j in range(kept):
+            nearest = min(nearest, costs[j] + 0.5 * _apart(factors[j], x[m], modes[j]))
+        share = np.exp(0.5 * log - own[m] - top)
+        found += share
+        apart += share * max(nearest - own[m], 0.0)
+    if not apart <= unlike * max(whole, found):
+        return 0
+    for j in range(kept):
+        put(x[j], modes[j])
+        put_square(P[j], shapes[j])
+        weight[j] = logs[j]
     return kept
+
+
+@compiled
+def _apart(L, x, y):
+    """Return the squared distance of two points, in deviations of which L L' is the inverse."""
+    distance = 0.0
+    for i in range(6):
+        s = 0.0
+        for k in range(i, 6):
+            s += L[k, i] * (x[k] - y[k])
+        distance += s * s
+    return distance

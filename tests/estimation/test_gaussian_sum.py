@@ -8,6 +8,7 @@ from dopplerlib import RadarArray, constant_velocity, doppler_jacobian, doppler_
 from dopplerlib.estimation._gaussian_sum_average import average
 from dopplerlib.estimation._gaussian_sum_setting import blank
 from dopplerlib.estimation.gaussian_sum import gaussian_sum, gaussian_sum_online
+from dopplerlib.workspace.targets import draw_records, draw_targets
 
 ARRAY = RadarArray.ring(6, 0.2)
 CENTERED = RadarArray(np.vstack([RadarArray.ring(5, 0.2).positions, np.zeros(3)]))
@@ -94,6 +95,76 @@ def test_its_covariance_is_that_of_its_errors(array, sigma_a):
     # False alarm: 1e-4 for two means, taken as normal.
     assert (np.abs(nees.mean(axis=0) - 6) < 4 * standard_error).all()
     assert standard_error.max() < 0.8
+
+
+def exact_evidence(z, x0, P0, at, shape, draws):
+    """Return the log density of one scan (K, 6), by importance sampling, and the effective draws.
+
+    Given a position the shifts are linear in the velocity; positions are drawn around `at`.
+    """
+    proposal = stats.multivariate_t(at, 4 * shape, df=5, seed=1)
+    p = proposal.rvs(draws)
+    H = doppler_jacobian(np.concatenate([p, np.zeros_like(p)], axis=-1), ARRAY)[..., 3:]
+    S = H @ P0[3:, 3:] @ H.swapaxes(-1, -2) + 0.4**2 / len(z) * np.eye(6)
+    innovation = z.mean(axis=0) - H @ x0[3:]
+    solved = np.linalg.solve(S, innovation[..., None])[..., 0]
+    log = -0.5 * np.sum(innovation * solved, axis=-1) - 0.5 * np.linalg.slogdet(2 * np.pi * S)[1]
+    log += stats.multivariate_normal.logpdf(p, x0[:3], P0[:3, :3]) - proposal.logpdf(p)
+    log[p[:, 0] < 0.03] = -np.inf
+    w = np.exp(log - log.max())
+    inside = stats.norm.logpdf(z, z.mean(axis=0), 0.4).sum()
+    inside -= 6 * stats.norm.logpdf(0, scale=0.4 / np.sqrt(len(z)))
+    return log.max() + np.log(w.mean()) + inside, w.sum() ** 2 / np.sum(w**2)
+
+
+# The first, because a window that promised much was believed without a look at what it kept; the
+# others, because there were no windows so far out.
+@pytest.mark.parametrize(
+    ("width", "out"),
+    [
+        (0.15, [-0.61, 0.34, 0.67, -0.25, 0.04, -0.1]),
+        (0.3, [-0.31, -0.04, -0.73, -0.06, 0.6, -0.06]),
+        (0.3, [-0.21, -0.15, -0.62, -0.47, -0.48, 0.32]),
+    ],
+)
+def test_a_target_far_out_in_the_prior_has_its_evidence(width, out):
+    P = width**2 * P0
+    truth = X0 + 7 * np.sqrt(np.diag(P)) * out
+    rng = np.random.default_rng(14)
+    z = doppler_shift(truth, ARRAY) + 0.4 * rng.standard_normal((5, 6))
+    found = gaussian_sum(z, ARRAY, X0, P, 1e-6, 0.0, 0.4, every=5)
+    expected, effective = exact_evidence(z, X0, P, found.x[0, :3], found.P[0, :3, :3], 10_000)
+    assert effective > 1000
+    # Seven deviations out, windows and Laplace are good to a factor of four.
+    assert found.evidence[0] == pytest.approx(expected, abs=1.5)
+
+
+def test_a_valley_still_curved_keeps_its_members():
+    # So slow that after 0.15 s one Gaussian at the mode of all scans leaves out where the rest is.
+    truth = np.array([0.516, -0.171, 0.255, -0.252, 0.021, -0.077])
+    path = np.tile(truth, (200, 1))
+    path[:, :3] += T * np.arange(200)[:, None] * truth[3:]
+    noise = 0.4 * np.random.default_rng(13).standard_normal((40, 400, 6))
+    found = gaussian_sum(doppler_shift(path, ARRAY) + noise[:, :200], ARRAY, X0, P0, T, 0, 0.4,
+                         every=200)  # fmt: skip
+    error = (found.x - path[-1])[:, 0]
+    nees = np.einsum("ri,ri->r", error, np.linalg.solve(found.P[:, 0], error[..., None])[..., 0])
+    # False alarm: 1e-4 for all, taken as chi-square.
+    assert nees.max() < stats.chi2.isf(1e-4 / len(nees), 6)
+
+
+def test_a_member_without_a_state_leaves_the_others_an_estimate():
+    # Of these targets one each gave an estimate of NaN, although there were members.
+    truths, noise = np.random.default_rng([9101, 66]).spawn(2)
+    for before, samples in ((31, 10), (669, 30)):
+        truths.spawn(before)
+        noise.spawn(before)
+        path = draw_targets(1, rng=truths, sigma_a=0.0, samples=samples)
+        z = draw_records(path, rng=noise)
+        found = gaussian_sum(z, ARRAY, X0, P0, T, 0.0, 0.4, every=5, mixture=400)
+        assert (found.members > 1).all()
+        assert np.isfinite(found.x).all()
+        np.testing.assert_array_equal((found.weights > 0).sum(axis=-1), found.members)
 
 
 def test_another_frame_gives_the_same():
