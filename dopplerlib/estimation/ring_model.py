@@ -11,7 +11,7 @@ from .._typing import ArrayLike, FloatArray
 from ..kernels import ring_coordinates as kernel
 from ..model.motion import dwna_gain
 from ..model.radar_array import RadarArray
-from . import covariances, sigma_points
+from . import covariances
 
 _LEAST = 0.15  # of the radius: nearer to the plane of the sensors no state is taken
 _FARTHEST = 46.0  # ln of rho in m
@@ -91,9 +91,6 @@ class RingModel:
     def start(self, x0: ArrayLike, P0: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return mean and covariance of the coordinates of Gaussian states.
 
-        By Gauss and Hermite's rule with three points an axis: a prior is broad, and the 12 points
-        of cubature would miss a third of the spread of eta.
-
         Parameters
         ----------
         x0 : array_like, shape (..., 6)
@@ -108,17 +105,11 @@ class RingModel:
         """
         x0, P0 = _checks.moderate("x0", x0, (6,)), _checks.covariance("P0", P0, 6, definite=False)
         _checks.check_leading(x0=(x0, 1), P0=(P0, 2))
-        points, weight = _hermite()
-        xi = self._coordinates(x0[..., None, :] + points @ covariances.square_root(P0).mT)
-        mean = weight @ xi
-        off = np.sqrt(weight) * (xi - mean[..., None, :]).mT
-        return mean, covariances.squared(off)
+        return _moments(self._coordinates_and_slopes, x0, P0, (0, 1, 2))
 
     @_checks.quiet
     def state(self, xi: ArrayLike, P: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return mean and covariance of the states of Gaussian coordinates, by cubature.
-
-        As long as range is hardly known, the 12 points claim too much: draws tell more.
+        """Return mean and covariance of the states of Gaussian coordinates.
 
         Parameters
         ----------
@@ -135,7 +126,7 @@ class RingModel:
         """
         xi, P = _checks.moderate("xi", xi, (6,)), _checks.covariance("P", P, 6, definite=False)
         _checks.check_leading(xi=(xi, 1), P=(P, 2))
-        return sigma_points.moments(self._state, xi, P, sigma_points.scaling(6))
+        return _moments(self._state_and_slopes, xi, P, (0, 1, 5))
 
     @_checks.quiet
     def f(self, xi: ArrayLike) -> FloatArray:
@@ -145,8 +136,8 @@ class RingModel:
     @_checks.quiet
     def F(self, xi: ArrayLike) -> FloatArray:
         """Return the derivatives (..., 6, 6) of `f`."""
-        *state, slopes = self._parts(xi)
-        v = np.stack(state[3:], axis=-1)
+        state, slopes = self._state_and_slopes(xi)
+        v = state[..., 3:]
         by_speed = 2 * (v[..., None, :] @ slopes[..., 3:, :])[..., 0, :]
         *seen, ell = np.moveaxis(self._held(xi), -1, 0)
         rest = [np.exp(-ell), np.sum(v * v, axis=-1), *np.moveaxis(by_speed, -1, 0)]
@@ -196,20 +187,27 @@ class RingModel:
         *seen, rho = kernel.to_coordinates(*np.moveaxis(x, -1, 0), self.radius)
         return np.stack([*seen, np.log(rho)], axis=-1)
 
+    def _coordinates_and_slopes(self, x):
+        """Return coordinates, and their derivatives (..., 6, 6) by the state."""
+        xi = self._coordinates(x)
+        at = [*np.moveaxis(x, -1, 0), np.exp(xi[..., 5])]
+        columns = [np.stack(kernel.pushed(*at, *axis), axis=-1) for axis in np.eye(6)]
+        return xi, np.stack(columns, axis=-1)
+
     def _after(self, x):
         return np.concatenate([x[..., :3] + self.T * x[..., 3:], x[..., 3:]], axis=-1)
 
     def _state(self, xi):
-        return np.stack(self._parts(xi)[:6], axis=-1)
+        return self._state_and_slopes(xi)[0]
 
-    def _parts(self, xi):
-        """Return the six components of the states, and their derivatives (..., 6, 6)."""
+    def _state_and_slopes(self, xi):
+        """Return states, and their derivatives (..., 6, 6) by the coordinates."""
         *seen, ell = np.moveaxis(self._held(xi), -1, 0)
         values = kernel.to_state(*seen, np.exp(ell), self.radius)
         slopes = np.zeros((*ell.shape, 6, 6))
         for (i, j), slope in zip(_SLOPES, values[6:], strict=True):
             slopes[..., i, j] = slope
-        return *values[:6], slopes
+        return np.stack(values[:6], axis=-1), slopes
 
     @property
     def _scales(self):
@@ -229,9 +227,29 @@ class RingModel:
         return held
 
 
-def _hermite():
-    """Return points (729, 6) and weights of the rule for six standard normal variables."""
+def _moments(function, x, P, given):
+    """Return mean and covariance of a function of Gaussians x (..., 6), P (..., 6, 6).
+
+    The function returns values and derivatives. Given three of its arguments it is linear in the
+    others, whose part is integrated by formula; over those three, by Gauss and Hermite's rule with
+    three points an axis.
+    """
     node, share = np.polynomial.hermite_e.hermegauss(3)
-    axes = np.meshgrid(*[node] * 6)
-    shares = np.meshgrid(*[share / share.sum()] * 6)
-    return np.stack(axes, axis=-1).reshape(-1, 6), np.prod(shares, axis=0).ravel()
+    points = np.stack(np.meshgrid(node, node, node), axis=-1).reshape(-1, 3)
+    weight = np.prod(np.meshgrid(*[share / share.sum()] * 3), axis=0).ravel()
+    order = [*given, *(i for i in range(6) if i not in given)]
+    P = P[..., order, :][..., order]
+    slope = covariances.solve(P[..., :3, :3], P[..., :3, 3:]).mT
+    left = covariances.square_root(P[..., 3:, 3:] - slope @ P[..., :3, 3:])
+    steps = points @ covariances.square_root(P[..., :3, :3]).mT
+    at = np.repeat(x[..., None, :], len(weight), axis=-2)
+    at[..., order] += np.concatenate([steps, steps @ slope.mT], axis=-1)
+    value, slopes = function(at)
+    mean = weight @ value
+    root = np.sqrt(weight)[:, None]
+    off = root * (value - mean[..., None, :])
+    spread = root[..., None] * (slopes[..., order[3:]] @ left[..., None, :, :])
+    spread = np.moveaxis(spread, -3, -1)
+    return mean, covariances.squared(
+        np.concatenate([off.mT, spread.reshape(*spread.shape[:-2], -1)], axis=-1)
+    )
