@@ -12,10 +12,10 @@ from ..model.motion import constant_velocity, dwna_gain, ncv_transition
 # deviation of each window as a share of that distance, so that their sum is even to a percent.
 _ACROSS, _ALONG, _WIDTH = 0.04, 0.2, 0.71
 _DRAWN = 2**14  # points of the prior that say where windows are needed
-_COUNTED = 2**10  # of those that spread more, at which the sum of the windows is taken
 _COVERED = 0.99  # share of them that lie in fine windows
-_COARSE, _TAIL = 3, 5.0  # size of the windows outside; as far as deviations of the prior
-_SPREAD = 2.0  # of the points that say where those are needed, in deviations
+_COARSE, _TAIL = 3, 5.0  # size of the windows outside; as far as standard deviations of the prior
+_SPREAD = 2.0  # of the points that say where those are needed, in standard deviations
+_COUNTED = 2**10  # of these points, at which the sum of the windows is taken
 _LEAST = 0.15  # of the radius: nearer to the sensors' plane, or the first of them, a member is lost
 _FLAT = 1e-9  # of the radius: so far off the plane a sensor is in it
 _SETTLING, _SCANS = 30, 512  # blocks of a target that goes straight at the first new fit, at most

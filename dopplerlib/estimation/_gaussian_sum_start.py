@@ -300,7 +300,7 @@ def settle(scans, variances, middles, now, positions, r, c, mean, information, l
 
 @compiled
 def _apart(L, x, y):
-    """Return the squared distance of two points, in deviations of which L L' is the inverse."""
+    """Return d' L L' d, for the difference d of two points."""
     distance = 0.0
     for i in range(6):
         s = 0.0
