@@ -1,8 +1,7 @@
 """Decisions of several trackers to stop on the same courses: runs, statistics, a saved study.
 
 ``SCENES`` are the targets: those of the workspace, and at 2 m/s; ``SCENES[name].trackers`` are the
-names in ``LABELS`` of the trackers that follow them. Trackers that take long follow the first parts
-of the workspace only, the scene "fewer".
+names in ``LABELS`` of the trackers that follow them.
 """
 
 from functools import cache, partial
@@ -74,15 +73,9 @@ class _Scene(NamedTuple):
 
 
 SCENES = {
-    "workspace": _Scene(
-        0, -PRIOR_MEAN[3], SAMPLES, ("truth", "bank", "moments", "paper", "ekf")
-    ),
+    "workspace": _Scene(0, -PRIOR_MEAN[3], SAMPLES, tuple(LABELS)),
     "2 m/s": _Scene(1, 2.0, SAMPLES // 2, ("truth", "bank", "ekf")),
-    "fewer": _Scene(
-        0, -PRIOR_MEAN[3], SAMPLES,
-        ("ekf_bayes", "ukf", "ring_iekf", "bank_half", "bank_double", "bank_broad"),
-    ),
-}  # fmt: skip
+}
 
 
 @record
@@ -267,7 +260,7 @@ class StopStudy:
 
 @checked
 def stop_runs(
-    scene: Literal["workspace", "2 m/s", "fewer"],
+    scene: Literal["workspace", "2 m/s"],
     part: Index,
     targets: Count,
     passing: Index,
@@ -374,7 +367,7 @@ def decision_numbers(alarm: Annotated[FloatArray, _checks.real]) -> IntArray:
 
 
 @checked
-def saved_stops(scene: Literal["workspace", "2 m/s", "fewer"]) -> StopStudy:
+def saved_stops(scene: Literal["workspace", "2 m/s"]) -> StopStudy:
     """Return the study of decisions that is saved in ``results``.
 
     Parameters
