@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from dopplerlib.workspace.comparison import tracker_study
+from dopplerlib.workspace.comparison import OF_BANK, tracker_study
 from dopplerlib.workspace.errors import TrackErrors, error_summary
 
 FILES = (".json",)
@@ -72,7 +72,7 @@ def row(settings, found):
     """Return the statistics of all runs of a part."""
     summary = asdict(error_summary(TrackErrors(**found)))
     if (settings["tracker"], settings["assumed"]) != ("bank", "right"):
-        del summary["axes"], summary["inside"]
+        summary = {name: value for name, value in summary.items() if name not in OF_BANK}
     kept = {name: _rounded(values, DIGITS.get(name, 3)) for name, values in summary.items()}
     return settings | {"first": _rounded(found["nees"][np.ix_(*FIRST)], 4)} | kept
 

@@ -11,7 +11,7 @@ from .._data import read_json, results
 from .._hints import Count, Index, Positive, between, checked
 from .._typing import FloatArray
 from ..evaluation.monte_carlo import skip_runs
-from .errors import EVERY, ErrorSummary, TrackErrors, track_errors
+from .errors import EVERY, WORST, ErrorSummary, TrackErrors, track_errors
 from .targets import (
     PRIOR_COVARIANCE,
     PRIOR_MEAN,
@@ -39,6 +39,9 @@ ASSUMED = {
     "sigma_a 0.8 m/s^2": {"sigma_a": 0.8},
     "broad prior": {"prior": "broad"},
 }
+
+# What is saved of the Gaussian sum alone, and its shape at a time.
+OF_BANK = {"axes": (6,), "inside": (), "nees_worst": (WORST,), "position_worst": (WORST,)}
 
 
 @checked
@@ -136,7 +139,7 @@ def saved_comparison() -> dict[tuple[str, str, str], ErrorSummary]:
     -------
     dict of ErrorSummary
         What is assumed is "right", or another of the settings of `ASSUMED`. Fractions `inside` and
-        along `axes` are NaN but for the tracker "bank" with the right ones.
+        along `axes`, and the worst runs, are NaN but for the tracker "bank" with the right ones.
 
     Notes
     -----
@@ -152,7 +155,7 @@ def saved_comparison() -> dict[tuple[str, str, str], ErrorSummary]:
     found = {}
     for row in rows:
         n = len(row["runs"])
-        row = {"axes": np.full((n, 6), np.nan), "inside": np.full(n, np.nan)} | row
+        row = {name: np.full((n, *more), np.nan) for name, more in OF_BANK.items()} | row
         found[row["case"], row["tracker"], row["assumed"]] = ErrorSummary(
             **{field.name: np.array(row[field.name], float) for field in fields(ErrorSummary)}
         )

@@ -16,6 +16,7 @@ from .targets import ARRAY, INTERVAL, PRIOR_COVARIANCE, SIGMA_A, SIGMA_F
 
 EVERY = 20  # samples from one output to the next
 FAR, BOUNDS = 0.05, 4.0  # a run is lost if it is off by more than this in m, and this many bounds
+WORST = 3  # runs that are kept one by one
 NEES_95, AXIS_95 = 12.591587243743977, 1.959963984540054  # chi-square of six, normal: 95 %
 
 _P, _V = slice(3), slice(3, 6)
@@ -78,6 +79,9 @@ class ErrorSummary:
         Roots of the mean squared bounds of the same runs.
     lost : ndarray, shape (O,)
         Fraction of runs whose position is off by more than 5 cm and by more than four bounds.
+    nees_worst, position_worst : ndarray, shape (O, 3)
+        The three largest NEES and position errors in m of one run each, falling: what a mean owes
+        to them.
     """
 
     runs: np.ndarray
@@ -93,6 +97,8 @@ class ErrorSummary:
     position_bound: np.ndarray
     velocity_bound: np.ndarray
     lost: np.ndarray
+    nees_worst: np.ndarray
+    position_worst: np.ndarray
 
     def __post_init__(self):
         """Check the fields."""
@@ -105,7 +111,7 @@ class ErrorSummary:
 
 
 def _like_nees(self, ndim):
-    """Return the fields of a record as arrays of the shape that NEES has, `axes` with one more."""
+    """Return the fields of a record as arrays of the shape that NEES has, some with one more."""
     values = {
         field.name: _checks.real(field.name, getattr(self, field.name)) for field in fields(self)
     }
@@ -113,7 +119,8 @@ def _like_nees(self, ndim):
     if len(shape) != ndim or not values["nees"].size:
         raise ValueError(f"nees must have {ndim} axes and something in it, got shape {shape}")
     for name, value in values.items():
-        _checks.exact_shape(name, value, (*shape, 6) if name == "axes" else shape)
+        more = {"axes": (6,), "nees_worst": (WORST,), "position_worst": (WORST,)}.get(name, ())
+        _checks.exact_shape(name, value, (*shape, *more))
     return values
 
 
@@ -206,6 +213,14 @@ def error_summary(errors: TrackErrors) -> ErrorSummary:
         values = np.where(there.reshape(there.shape + (1,) * (values.ndim - 2)), values, 0)
         return np.moveaxis(values.sum(axis=0), 0, -1) / n
 
+    def worst(values):
+        rising = np.sort(np.where(there, values, np.nan), axis=0)  # NaN comes last
+        few = np.full((WORST, len(n)), np.nan)
+        for o, count in enumerate(n):
+            last = rising[max(count - WORST, 0) : count, o][::-1]
+            few[: len(last), o] = last
+        return few.T
+
     def median(values, there):
         return np.median(values[there]) if there.any() else np.nan
 
@@ -222,5 +237,7 @@ def error_summary(errors: TrackErrors) -> ErrorSummary:
         position_error=error(squares["position"]) / mean(squares["position"]) / 2,
         velocity_error=error(squares["velocity"]) / mean(squares["velocity"]) / 2,
         lost=mean(far),
+        nees_worst=worst(nees),
+        position_worst=worst(errors.position),
         **{name: np.sqrt(mean(square)) for name, square in squares.items()},
     )

@@ -14,6 +14,7 @@ def summary(level, bound=0.01):
         runs=n, nees=level * one, nees_error=0.1 * level * one, nees_median=one, inside=one,
         axes=np.ones((3, 6)), position=0.02 * one, velocity=one, position_error=one,
         velocity_error=one, position_bound=bound * one, velocity_bound=one, lost=0 * one,
+        nees_worst=np.ones((3, 3)), position_worst=np.ones((3, 3)),
     )  # fmt: skip
 
 

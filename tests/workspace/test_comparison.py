@@ -67,6 +67,8 @@ def test_statistics_are_those_of_the_runs_that_have_not_ended():
     assert found.velocity[0] == pytest.approx(0.02)
     assert (found.position_bound[1], found.velocity_bound[1]) == pytest.approx((0.02, 0.1))
     assert found.lost.tolist() == pytest.approx([0, 1 / 30])
+    np.testing.assert_allclose(found.nees_worst[1], sorted(late)[:-4:-1])
+    np.testing.assert_allclose(found.position_worst[1], [0.2, 0.06, 0.01])
     np.testing.assert_allclose(found.time, [EVERY * 1e-3, 2 * EVERY * 1e-3])
 
 

@@ -16,7 +16,8 @@ def summary(**changed):
         runs=n, nees=6 * one, nees_error=0.05 * one, nees_median=5.3 * one, inside=0.95 * one,
         axes=np.full((50, 6), 0.95), position=0.01 * one, velocity=0.1 * one,
         position_error=0.01 * one, velocity_error=0.01 * one, position_bound=0.01 * one,
-        velocity_bound=0.1 * one, lost=0 * one,
+        velocity_bound=0.1 * one, lost=0 * one, nees_worst=np.full((50, 3), 20.0),
+        position_worst=np.full((50, 3), 0.04),
     )  # fmt: skip
     return replace(right, **changed)
 
