@@ -19,6 +19,7 @@ STYLES = (
     (TRUTH, ":"),
     (BOUND, "-"),
 )
+_MEAN, _MEDIAN = 6.0, 5.348  # of chi-square with six degrees of freedom
 _FAINTEST = 0.12  # opacity of a Gaussian of no weight
 
 
@@ -77,25 +78,31 @@ def members(
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
 
 
-@drawing(7.0, 3.6)
+@drawing(7.0, 5.6)
 def nees(figure: Figure, cases: dict[str, dict[str, ErrorSummary]]) -> None:
-    """Draw the mean NEES of trackers over time, with two standard errors, one panel for each case.
+    """Draw mean and median of the NEES of trackers over time, one column for each case.
 
-    What is beyond 1e8 is not shown: a covariance that is singular to rounding.
+    The mean has two standard errors, where these are less than half of it: a mean that one run
+    makes has none. Beyond 1e8 nothing is shown: there a covariance is singular to rounding.
 
     cases: By title of the panel, the statistics of each tracker by its label.
     """
-    panels = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
-    for ax, (title, trackers) in zip(panels, cases.items(), strict=True):
+    panels = figure.subplots(2, len(cases), sharex=True, sharey=True, squeeze=False)
+    for (mean, median), (title, trackers) in zip(panels.T, cases.items(), strict=True):
         for (label, found), (color, ls) in zip(trackers.items(), STYLES, strict=False):
-            ax.plot(found.time, found.nees, color=color, ls=ls, label=label)
-            low = np.maximum(found.nees - 2 * found.nees_error, 1)
-            high = found.nees + 2 * found.nees_error
-            ax.fill_between(found.time, low, high, color=color, alpha=0.2, lw=0)
-        ax.axhline(6, color=BOUND, lw=0.8, label="consistent")
-        ax.set(title=title, xlabel="time (s)", yscale="log", ylim=(3, 1e8), xlim=(0, 1))
-    panels[0].set_ylabel("mean NEES")
-    _below(figure, panels[0])
+            mean.plot(found.time, found.nees, color=color, ls=ls, label=label)
+            width = np.where(4 * found.nees_error < found.nees, 2 * found.nees_error, np.nan)
+            band = found.nees - width, found.nees + width
+            mean.fill_between(found.time, *band, color=color, alpha=0.2, lw=0)
+            median.plot(found.time, found.nees_median, color=color, ls=ls)
+        for ax, consistent in ((mean, _MEAN), (median, _MEDIAN)):
+            ax.axhline(consistent, color=BOUND, lw=0.8, label="consistent")
+            ax.set(yscale="log", ylim=(3, 1e8), xlim=(0, 1))
+        mean.set_title(title)
+        median.set_xlabel("time (s)")
+    for ax, what in zip(panels[:, 0], ("mean NEES", "median NEES"), strict=True):
+        ax.set_ylabel(what)
+    _below(figure, panels[0, 0])
 
 
 @drawing(7.0, 5.6)

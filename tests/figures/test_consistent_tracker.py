@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from dopplerlib.figures import consistent_tracker as draw
 from dopplerlib.workspace.errors import ErrorSummary
@@ -40,7 +41,7 @@ def test_members_are_ellipses_as_dark_as_they_are_likely():
 
 def test_nees_and_errors_over_bounds_are_those_given():
     cases = {"A": {"one": summary(6.0), "two": summary(60.0)}, "B": {"one": summary(7.0)}}
-    left, right = draw.nees(cases).axes
+    left, right, median, _ = draw.nees(cases).axes
     one, two, _ = left.lines
     np.testing.assert_allclose(one.get_data(), [[0.02, 0.04, 0.06], [6, 6, 6]])
     np.testing.assert_allclose(two.get_ydata(), 60)
@@ -48,6 +49,7 @@ def test_nees_and_errors_over_bounds_are_those_given():
     (band, _) = left.collections
     assert band.get_datalim(left.transData).y0 == pytest.approx(6 - 1.2)
     assert (left.get_title("left"), right.get_title("left")) == ("A", "B")
+    np.testing.assert_allclose([line.get_ydata()[0] for line in median.lines], [1, 1, chi2.median(6)], 1e-3)
     panel, _ = draw.over_bound(cases).axes
     np.testing.assert_allclose(panel.lines[0].get_ydata(), 2)
 
