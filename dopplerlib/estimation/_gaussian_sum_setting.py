@@ -13,6 +13,7 @@ from ..model.motion import constant_velocity, dwna_gain, ncv_transition
 _ACROSS, _ALONG, _WIDTH = 0.04, 0.2, 0.71
 _DRAWN = 2**14  # points of the prior that say where windows are needed
 _COVERED = 0.99  # share of them that lie in fine windows
+_CENTERED = 0.9  # share of them in windows whose center is a state; else the windows are moved
 _COARSE, _TAIL = 3, 5.0  # size of the windows outside; as far as standard deviations of the prior
 _SPREAD = 2.0  # of the points that say where those are needed, in standard deviations
 _COUNTED = 2**10  # of these points, at which the sum of the windows is taken
@@ -175,9 +176,17 @@ def _windows(mean, P, radius, least):
     seen = _seen(mean + draws @ root.T, radius, least)
     if not len(seen):
         raise ValueError("P0 must leave states in front of the sensors, got none")
-    cells, drawn = np.unique(_cells(seen, radius, 1), axis=0, return_counts=True)
+    cells, place, drawn = np.unique(
+        _cells(seen, radius, 1), axis=0, return_inverse=True, return_counts=True
+    )
     order = np.argsort(-drawn, kind="stable")
-    fine = cells[order][np.cumsum(drawn[order]) - drawn[order] < _COVERED * drawn.sum()]
+    order = order[np.cumsum(drawn[order]) - drawn[order] < _COVERED * drawn.sum()]
+    fine, middles = cells[order], _centers(cells[order], radius, 1)
+    if drawn[order] @ _is_state(middles, radius, least) < _CENTERED * drawn.sum():
+        # Near the plane a cell has room on both sides of it: what was drawn is on the right one.
+        sums = np.zeros((len(cells), 3))
+        np.add.at(sums, place, seen)
+        middles = (sums / drawn[:, None])[order]
     # Outside, as far as the tail of the prior goes, a lattice whose cells are larger.
     far = draws[np.sum(draws[:, :3] ** 2, axis=-1) < _TAIL**2 / _SPREAD**2]
     far = _seen(mean + _SPREAD * far @ root.T, radius, least)
@@ -185,7 +194,7 @@ def _windows(mean, P, radius, least):
     near = set(map(tuple, fine.tolist()))
     centers = _centers(coarse, radius, _COARSE)
     outside = [tuple(c) not in near for c in _cells(centers, radius, 1).tolist()]
-    grid = np.concatenate([_centers(fine, radius, 1), centers[outside]])
+    grid = np.concatenate([middles, centers[outside]])
     size = np.repeat([1, _COARSE], [len(fine), sum(outside)])
     widths = size[:, None] * (_WIDTH * np.array([_ACROSS / radius, _ACROSS / radius, _ALONG]))
     apart = (far[:_COUNTED, None] - grid) / widths
@@ -199,6 +208,15 @@ def _seen(states, radius, least):
     """Return eta and ln rho (..., 3) of those states that are in front of the sensors."""
     eta_y, eta_z, *_, rho = kernel.to_coordinates(*states[states[:, 0] > least].T, radius)
     return np.stack([eta_y, eta_z, np.log(rho)], axis=-1)
+
+
+def _is_state(points, radius, least):
+    """Return which points (W, 3) of eta and ln rho are of a position in front of the sensors."""
+    eta_y, eta_z, ln_rho = points.T
+    still = np.zeros(len(points))
+    with np.errstate(invalid="ignore"):
+        x = kernel.to_state(eta_y, eta_z, still, still, still, np.exp(ln_rho), radius)[0]
+    return x > least
 
 
 def _cells(points, radius, size):

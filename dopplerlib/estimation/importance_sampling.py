@@ -22,6 +22,7 @@ _BACKWARD = np.array([1.0, 1, 1, -1, -1, -1])  # of a state: that in reversed ti
 _MEMBERS = 100  # of the Gaussian sum that are taken, at most
 _ROUNDS, _ENOUGH = 4, 0.5  # fits, at most, of the proposal; efficiency at which none follows
 _BLOCK = 5  # samples that the Gaussian sum takes together, at most
+_CLEAR = 1.1  # times the distance from the plane at which a Gaussian sum takes states
 _BACK = 4.0  # times the covariance at the end, from which the Gaussian sum goes back
 _NONE = np.nan, np.nan, 0.0, np.nan, np.nan  # where no state was found
 
@@ -144,7 +145,8 @@ def importance_posterior(
     F = ncv_transition(T, 3, "derivative")
     Q = np.zeros((6, 6)) if steady else constant_velocity(T, sigma_a, noise)[1]
     mean, information = F @ x0, np.linalg.inv(F @ P0 @ F.T + Q)
-    to_ring, from_ring = _coordinates(*_frame(array, x0)[:3])
+    center, axes, radius, *_, least = _frame(array, x0)
+    to_ring, from_ring = _coordinates(center, axes, radius)
     weights = 1 / variance
 
     # Here, and not above, so that importing the library does not load numba.
@@ -153,6 +155,10 @@ def importance_posterior(
     def members(run):
         """Return a Gaussian sum of the first sample. Backward in time, shifts change their sign."""
         x, P = F @ forward.x[run, -1], _BACK * forward.P[run, -1]
+        short = _CLEAR * least - axes[0] @ (x[:3] - center)
+        if short > 0:  # at the sensors' plane no sum begins; draws need no more than to cover
+            x[:3] += short * axes[0]
+            P[:3, :3] += short**2 * np.outer(axes[0], axes[0])
         found = gaussian_sum(
             -z[run, ::-1], array, _BACKWARD * x, _backward(P), sigma_f=deviation[::-1],
             every=K, mixture=_MEMBERS, workers=1, **motion,

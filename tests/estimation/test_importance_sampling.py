@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.special import logsumexp
+from scipy.stats import chi2
 
 from dopplerlib import RadarArray, doppler_shift, ekf
 from dopplerlib.estimation.importance_sampling import importance_posterior
@@ -96,6 +97,22 @@ def test_neither_inflation_nor_frame_moves_the_posterior():
     both = draws / (1 + one.efficiency / other.efficiency)  # their scatters add up
     agree(one, turn.T @ (other.x - shift), turn.T @ other.P @ turn, both)
     assert one.efficiency > 0.2
+
+
+def test_a_record_may_end_where_no_gaussian_sum_begins():
+    """NEES is below the 1 - 1e-6 quantile of chi-square for each of five records."""
+    start = np.array([0.1055, 0.05, 0.03, -0.75, 0.0, 0.0])
+    P0 = np.diag([0.03, 0.05, 0.05, 0.1, 0.1, 0.1]) ** 2
+    z = np.stack([record(start, 100, seed) for seed in range(5)])
+    mean = [0.11, 0.04, 0.02, -0.7, 0.0, 0.0]
+    rng = np.random.default_rng(5)
+    found = importance_posterior(z, RING, mean, P0, T, 0.0, SIGMA_F, rng=rng)
+    end = start + 100 * T * np.pad(start[3:], (0, 3))
+    assert end[0] == pytest.approx(0.0305)  # one more interval, and no sum begins there
+    assert np.median(found.efficiency) > 0.2
+    off = end - found.x
+    squared = np.sum(off * np.linalg.solve(found.P, off[..., None])[..., 0], axis=-1)
+    assert (squared < chi2.isf(1e-6, 6)).all()
 
 
 def test_a_record_has_the_same_bits_on_any_number_of_workers_and_a_seed_for_each_record():

@@ -49,7 +49,9 @@ def test_nees_and_errors_over_bounds_are_those_given():
     (band, _) = left.collections
     assert band.get_datalim(left.transData).y0 == pytest.approx(6 - 1.2)
     assert (left.get_title("left"), right.get_title("left")) == ("A", "B")
-    np.testing.assert_allclose([line.get_ydata()[0] for line in median.lines], [1, 1, chi2.median(6)], 1e-3)
+    np.testing.assert_allclose(
+        [line.get_ydata()[0] for line in median.lines], [1, 1, chi2.median(6)], 1e-3
+    )
     panel, _ = draw.over_bound(cases).axes
     np.testing.assert_allclose(panel.lines[0].get_ydata(), 2)
 
