@@ -1,6 +1,6 @@
 """Trackers by faults: errors, consistency, lost targets, and decisions to stop.
 
-Half an hour on one processor. All trackers of a fault have the same records, and all faults
+Some thirty minutes on one processor. All trackers of a fault have the same records, and all faults
 the same truths and noise.
 """
 

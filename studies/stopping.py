@@ -1,6 +1,6 @@
 """Decisions of several trackers to stop before a collision, on the same courses.
 
-Half an hour on one processor. Targets are drawn from the prior of the workspace, and what comes
+Some thirty minutes on one processor. Targets are drawn from the prior of the workspace, and what comes
 into the ball about the center of the ring, nearly does, or passes is tracked.
 """
 
