@@ -1,7 +1,7 @@
 """Decisions of several trackers to stop before a collision, on the same courses.
 
-Some thirty minutes on one processor. Targets are drawn from the prior of the workspace, and what comes
-into the ball about the center of the ring, nearly does, or passes is tracked.
+Some thirty minutes on one processor. Targets are drawn from the prior of the workspace, and what
+comes into the ball about the center of the ring, nearly does, or passes is tracked.
 """
 
 from io import BytesIO

@@ -91,7 +91,6 @@ def many_bounds(
         right.plot(*(1e3 * line).T, color=OURS, lw=0.7, alpha=0.6)
     left.plot(*sensors.T, "s", color=SENSOR, ms=4, label="sensors")
     left.set(xlabel="y (m)", ylabel="x (m)")
-    left.legend(loc="upper right")
     looks = ((TRUTH, "--"), (PUBLISHED, "-"))
     for (name, P), (color, ls) in zip(means.items(), looks, strict=True):
         line = 1e3 * (np.linalg.cholesky(P) @ circle).T
@@ -99,7 +98,7 @@ def many_bounds(
     right.set(xlabel="error of y (mm)", ylabel="error of x (mm)")
     for ax in (left, right):
         ax.set_aspect("equal", adjustable="datalim")
-    right.legend(loc="upper right")
+    figure.legend(loc="outside lower center", ncols=3)
 
 
 @drawing(6.0, 3.0)

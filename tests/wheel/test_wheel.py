@@ -171,7 +171,7 @@ def test_the_wheel_holds_the_library_and_its_data(wheel):
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
     assert names == library | data
     assert {f"dopplerlib/{name}" for name in ("py.typed", "figures/style.mplstyle")} <= names
-    assert wheel.stat().st_size < 3.0e6  # three fifths of it what the studies found
+    assert wheel.stat().st_size < 3.5e6  # two thirds of it what the studies found, run by run
 
 
 def test_everything_works_where_it_is_installed(installed):
