@@ -176,11 +176,8 @@ def stop_alarm_online(
         square = x * (x * xx + 2 * (y * xy + z * xz)) + y * (y * yy + 2 * z * yz) + z * z * zz
         std = sqrt(max(square, 0.0)) / length if length > 0 else 0.0
         # Not a number fails the comparison.
-        return filled(
-            StopDecision,
-            distance=length,
-            distance_std=std,
-            alarm=not length + quantile * std > distance,
-        )
+        alarm = not length + quantile * std > distance
+        fields = {"distance": length, "distance_std": std, "alarm": alarm}
+        return filled(StopDecision, fields)
 
     return decide

@@ -93,9 +93,10 @@ def compiled_step():
         factor(P0, 0, memory, 0, 1)
 
     @cached_njit
-    def filter_sample(memory, sensors, columns):
+    def filter_sample(memory):
         """Return whether the state was updated, or, if nothing was done, that z is infinite."""
         compiled_in  # noqa: B018  (see fingerprint)
+        sensors, columns = int(memory[len(memory) - 2]), int(memory[len(memory) - 1])
         for n in range(sensors):
             measured = memory[SENSORS + n * kernel.SENSOR_ROWS + kernel.MEASUREMENT]
             if measured == np.inf or measured == -np.inf:
@@ -117,15 +118,17 @@ def compiled_step():
 class SampleMemory:
     """The memory of `compiled_step`, with names for its parts."""
 
-    def __init__(self, positions, doppler_per_speed, lower, upper):
+    def __init__(self, positions, doppler_per_speed, lower, upper, columns):
         N = len(positions)
         sizes = {"T": 1, "noise": 18, "variance": N, "P": 36, "innovation": N, "S": N * N}
+        sizes["counts"] = 2
         more = sum(sizes.values())
         self.all = new_memory(1, positions, doppler_per_speed, lower, upper, more)
         places = np.cumsum(list(sizes.values()))[:-1]
-        self.T, self.noise, self.variance, P, self.innovation, S = np.split(
+        self.T, self.noise, self.variance, P, self.innovation, S, counts = np.split(
             self.all[-more:], places
         )
+        counts[:] = N, columns
         self.P, self.S = P.reshape(6, 6), S.reshape(N, N)
         self.x = self.all[kernel.PREDICTED : kernel.PREDICTED + 6]
         self.z = self.all[SENSORS + kernel.MEASUREMENT :: kernel.SENSOR_ROWS][:N]

@@ -199,7 +199,7 @@ def ekf(
         value.setflags(write=False)
     return filled(
         Track,
-        **{
+        {
             name: value.reshape(*batch, *value.shape[1:]) if wanted.get(name, True) else None
             for name, value in out.items()
         },

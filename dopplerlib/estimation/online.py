@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from .. import _checks
-from .._records import filled, own
+from .._records import filled
 from .._typing import ArrayLike
 from ..model.doppler import check_clear_of_sensors
 from ..model.motion import dwna_gain
@@ -111,13 +111,16 @@ def ekf_online(
 
     from ._ekf_loop import INFINITE, NIS, UPDATED, SampleMemory, compiled_step
 
-    memory = SampleMemory(array.positions, array.doppler_per_speed, *bounds)
+    count = len(columns)
+    memory = SampleMemory(array.positions, array.doppler_per_speed, *bounds, count)
     begin, step = compiled_step()
     begin(memory.all, x0.copy(), P0.flatten())  # copies may be written to: one type for numba
     memory.variance[:] = sigma_f**2
     everything, measured, last = memory.all, memory.z, None
-    now = memory.x, *(getattr(memory, name) if name in keep else None for name in _OPTIONAL)
-    shape, double, count = (N,), measured.dtype, len(columns)
+    copy_x = memory.x.copy
+    copies = [(name, getattr(memory, name).copy) for name in _OPTIONAL if name in keep]
+    missing = dict.fromkeys(_OPTIONAL)
+    shape, double = (N,), measured.dtype
 
     def interval(given):
         """Write an interval and its noise to the memory."""
@@ -139,20 +142,17 @@ def ekf_online(
         if T is not last:
             interval(T)
             last = T
-        measured[:] = z
-        outcome = step(everything, N, count)
+        measured[...] = z
+        outcome = step(everything)
         if outcome == INFINITE:
             _measurements(z[None], array)  # says which one
-        x, P, innovation, S = now
-        return filled(
-            Track,
-            x=own(x),
-            P=P if P is None else own(P),
-            innovation=innovation if innovation is None else own(innovation),
-            S=S if S is None else own(S),
-            nis=everything[NIS],
-            updated=outcome == UPDATED,
-        )
+        x = copy_x()
+        x.setflags(False)
+        fields = {"x": x, **missing, "nis": everything[NIS], "updated": outcome == UPDATED}
+        for name, copy in copies:
+            fields[name] = value = copy()
+            value.setflags(False)
+        return filled(Track, fields)
 
     return update
 
