@@ -356,7 +356,7 @@ def covariance(name, value, n, definite=True):
     the units: as correlations, up to rounding. It is returned as it came.
     """
     array = finite(name, value, (n, n))
-    if not (array == array.mT).all():
+    if not _symmetric(array):
         difference = np.abs(array - array.mT)
         deviation = np.sqrt(np.abs(np.diagonal(array, axis1=-2, axis2=-1)))
         if (difference > _ROUNDING * deviation[..., :, None] * deviation[..., None, :]).any():
@@ -377,6 +377,13 @@ def covariance(name, value, n, definite=True):
         f"{name} must be positive {'definite' if definite else 'semidefinite'}, "
         f"got a smallest eigenvalue of {got}"
     )
+
+
+def _symmetric(array):
+    """Return whether matrices are symmetric to the last bit."""
+    if array.ndim == 2 and array.tobytes() == array.T.tobytes():  # a quarter of the time
+        return True
+    return (array == array.mT).all()
 
 
 def _least_eigenvalue(array):

@@ -146,6 +146,21 @@ def factor(P0, at, memory, lane, lanes):
 
 
 @_inline
+def clear_of_sensors(memory, sensors, lanes, lane, T):
+    """Return whether the next prediction is on no sensor; see `check_clear_of_sensors`."""
+    s = (SENSORS + sensors * kernel.SENSOR_ROWS) * lanes + 3 + 2 * sensors
+    for _ in range(sensors):
+        square = 0.0
+        for i in range(kernel.PREDICTED, kernel.PREDICTED + 3):
+            d = memory[i * lanes + lane] + T * memory[(i + 3) * lanes + lane] - memory[s]
+            square += d * d
+            s += 1
+        if square == 0.0:
+            return False
+    return True
+
+
+@_inline
 def cycle(memory, sensors, lanes, width, T, noise, first, columns, variance, row, project):
     """Predict, linearize, update and gate, once, for the measurements that the sensors hold.
 

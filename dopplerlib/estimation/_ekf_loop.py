@@ -13,6 +13,7 @@ from ._ekf_cycle import (
     SAMPLE_VARIANCE,
     SENSORS,
     UPDATES,
+    clear_of_sensors,
     covariance,
     cycle,
     factor,
@@ -36,10 +37,12 @@ def compiled(lanes):
 
     @cached_njit
     def filter_records(
-        memory, z, sensors, samples, T, noise, columns, variance, x0, P0,
+        memory, sensors, samples, columns, z, T, noise, variance, x0, P0,
         x, P, innovation, S, nis, updated,
     ):  # fmt: skip
+        """Return whether no run is predicted onto a sensor at its first sample."""
         compiled_in  # noqa: B018  (see fingerprint)
+        clear = True
         runs = len(nis) // samples
         # An array of size zero says that nobody wants this output.
         for first in range(0, runs, lanes):
@@ -47,6 +50,7 @@ def compiled(lanes):
             for lane in range(width):
                 read_state(memory, lane, x0, (first + lane) * 6, lanes)
                 factor(P0, (first + lane) * 36, memory, lane, lanes)
+                clear = clear and clear_of_sensors(memory, sensors, lanes, lane, T[0])
             for k in range(samples):
                 step = k if len(T) > 1 else 0  # one interval for all samples, or each its own
                 for n in range(sensors):
@@ -74,6 +78,7 @@ def compiled(lanes):
                             memory, sensors, lanes, lane, variance, k * sensors,
                             S, at * sensors * sensors,
                         )  # fmt: skip
+        return clear
 
     return filter_records
 

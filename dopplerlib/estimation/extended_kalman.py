@@ -4,7 +4,8 @@ import os
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
+from math import prod
 from typing import Literal
 
 import numpy as np
@@ -21,6 +22,7 @@ from ._ekf_general import filter_general, general_motion
 from .track import Track
 
 _OPTIONAL = ("P", "innovation", "S")
+_NOTHING = np.empty(0)
 
 
 @_checks.quiet
@@ -138,7 +140,8 @@ def ekf(
     variance = _variance(sigma_f, z.shape[-2:])
     _checks.one_of("gate", gate, (None, "upper", "two-sided", "soft"))
     soft = gate == "soft"
-    lower, upper = gate_bounds("upper" if soft else gate, len(array), gate_probability)
+    probability = _checks.probability("gate_probability", gate_probability)
+    lower, upper = _bounds("upper" if soft else gate, len(array), probability)
     clocks = _clock_noise(n > 6, sigma_clock=sigma_clock, sigma_drift=sigma_drift)
     x0 = _checks.finite("x0", x0, (n,))
     P0 = _checks.covariance("P0", P0, n, definite=False)
@@ -147,7 +150,7 @@ def ekf(
         workers = _checks.whole_number("workers", workers)
 
     batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
-    runs = int(np.prod(batch))
+    runs = prod(batch)
     x0 = _checks.each_run("x0", x0, batch, (n,))
     P0 = _checks.each_run("P0", P0, batch, (n, n))
     if soft or isinstance(array, DopplerLinks):
@@ -155,55 +158,56 @@ def ekf(
         bounds = (lower, upper, soft) if gate else None
         track = filter_general(z, array, x0, P0, motion, variance, bounds)
         return replace(track, **{name: None for name in _OPTIONAL if name not in keep})
-    check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
-    # Whether an array may be written to is part of its type: numba would compile the loop again
-    # for every mixture, 2 s each.
     # Whether an array may be written to is part of its type: numba would compile the loop again
     # for every mixture, 2 s each.
     inputs = [np.ascontiguousarray(v).reshape(-1) for v in (z, variance, T, columns, x0, P0)]
     for value in inputs:
         value.setflags(write=False)
-    z, variance, T, noise_columns, x0, P0 = inputs
     shapes = {
         "x": (6,), "P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors), "nis": (),
     }  # fmt: skip
-    wanted = {name: name in keep or name not in _OPTIONAL for name in shapes}
     out = {
-        name: np.empty((runs if wanted[name] else 0, samples, *shape))
+        name: np.empty((*batch, samples, *shape)) if name in keep or name not in _OPTIONAL else None
         for name, shape in shapes.items()
     }
-    out["updated"] = np.empty((runs, samples), bool)
+    out["updated"] = np.empty((*batch, samples), bool)
+    results = [_NOTHING if value is None else value.reshape(-1) for value in out.values()]
 
-    # Here, and not above, so that importing the library does not load numba.
-    from ._ekf_loop import LANES, compiled, new_memory
-
+    LANES, compiled, new_memory = _loop()
     lanes = LANES if runs >= LANES else 1
-    each = samples * sensors, 6, 36
+    sizes = sensors, samples, columns.shape[-2]
+
+    def run(z, variance, T, columns, x0, P0, *results):
+        memory = new_memory(lanes, array.positions, array.doppler_per_speed, lower, upper)
+        return compiled(lanes)(memory, *sizes, z, T, columns, variance, x0, P0, *results)
 
     def part(first, last):
-        memory = new_memory(lanes, array.positions, array.doppler_per_speed, lower, upper)
-        own = [v[first * n : last * n] for v, n in zip((z, x0, P0), each, strict=True)]
-        results = [value[first:last].reshape(-1) for value in out.values()]
-        compiled(lanes)(
-            memory, own[0], sensors, samples, T, noise_columns, columns.shape[-2], variance,
-            *own[1:], *results,
-        )  # fmt: skip
+        def own(values):
+            return values[first * (len(values) // runs) : last * (len(values) // runs)]
+
+        z, variance, T, columns, x0, P0 = inputs
+        return run(own(z), variance, T, columns, own(x0), own(P0), *map(own, results))
 
     if runs <= lanes:
-        part(0, runs)
+        clear = run(*inputs, *results)
     else:
         workers = workers or os.cpu_count() or 1
         with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(part, *_parts(runs, lanes, workers)))
+            clear = all(pool.map(part, *_parts(runs, lanes, workers)))
+    if not clear:
+        check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
     for value in out.values():
-        value.setflags(write=False)
-    return filled(
-        Track,
-        {
-            name: value.reshape(*batch, *value.shape[1:]) if wanted.get(name, True) else None
-            for name, value in out.items()
-        },
-    )
+        if value is not None:
+            value.setflags(False)
+    return filled(Track, out)
+
+
+@cache
+def _loop():
+    # Here, and not above, so that importing the library does not load numba.
+    from ._ekf_loop import LANES, compiled, new_memory
+
+    return LANES, compiled, new_memory
 
 
 @checked
@@ -237,14 +241,14 @@ def gate_bounds(
     >>> round(float(lower[6]), 3), round(float(upper[6]), 3)
     (1.237, 14.449)
     """
-    if sensors > 10**6:  # 8 MB
-        raise ValueError(f"sensors must be at most a million, got {sensors}")
     lower, upper = _bounds(gate, sensors, gate_probability)
     return lower.copy(), upper.copy()
 
 
 @lru_cache
 def _bounds(gate, sensors, gate_probability):
+    if sensors > 10**6:  # 8 MB
+        raise ValueError(f"sensors must be at most a million, got {sensors}")
     lower = np.full(sensors + 1, -np.inf)
     upper = np.full(sensors + 1, np.inf)
     if gate is not None:
