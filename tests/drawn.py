@@ -1,8 +1,15 @@
 """What holds for the figures of every module."""
 
 import re
+from itertools import combinations
 
 import matplotlib.pyplot as plt
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
+
+SMALLEST = 8  # points: 12 px on a page that shows a figure of seven inches at full width
+SLACK = 2  # px: boxes of letters have air around them
 
 # What a label of a quantity without a unit speaks of.
 _PURE = (
@@ -11,10 +18,12 @@ _PURE = (
 )
 
 
-def check_figures(module, figures):
+def check_figures(module, figures, *, made_up=(), fine=()):
     """Fail if a public function of the module has no figure, or one does not fit a page.
 
-    `figures` has a figure by the name of each function.
+    `figures` has a figure by the name of each function. Nothing in it lies on a text; of those in
+    `made_up` the curves may run through the legend, since they are nobody's results, and those in
+    `fine` may have numbers in small cells.
     """
     public = {
         name
@@ -24,8 +33,62 @@ def check_figures(module, figures):
     assert public == set(figures)
     for name, figure in figures.items():
         assert figure.get_figwidth() <= 7, name
-        figure.canvas.draw()
+        figure.draw_without_rendering()
+        assert overlaps(figure) == [], name
+        assert (covered(figure) != []) == (name in made_up), name
+        assert (small(figure) != []) == (name in fine), name
     assert plt.get_fignums() == []
+
+
+def _texts(figure):
+    """Return (text, box) of all that is written in a laid out figure, boxes in px."""
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    hidden = set()
+    for axis in (getattr(ax, f"{name}axis") for ax in figure.axes for name in ax._axis_names):
+        low, high = sorted(axis.get_view_interval())
+        for tick in axis.get_major_ticks() + axis.get_minor_ticks():
+            if not low <= tick.get_loc() <= high:  # beyond the view: not drawn
+                hidden |= {tick.label1, tick.label2}
+        if not (axis.axes.axison and axis.axes.get_visible()):
+            hidden |= set(axis.findobj(Text))
+    return [
+        (text, text.get_window_extent(renderer))
+        for text in figure.findobj(Text)
+        if text.get_text().strip() and text.get_visible() and text not in hidden
+    ]
+
+
+def small(figure):
+    """Return the texts that a reader has to come closer for."""
+    return [text.get_text() for text, _ in _texts(figure) if text.get_fontsize() < SMALLEST]
+
+
+def overlaps(figure):
+    """Return the pairs of texts that lie on each other."""
+    texts = [(text.get_text(), box) for text, box in _texts(figure)]
+    return [
+        (one, other)
+        for (one, a), (other, b) in combinations(texts, 2)
+        if (common := Bbox.intersection(a, b)) and min(common.width, common.height) > SLACK
+    ]
+
+
+def covered(figure):
+    """Return the labels of lines that run through a legend of their axes."""
+    found = []
+    for ax in figure.axes:
+        if (legend := ax.get_legend()) is None:
+            continue
+        box = Bbox.intersection(legend.get_window_extent().padded(-SLACK), ax.bbox)
+        if box is None:
+            continue
+        for line in ax.lines:
+            path = line.get_path().transformed(line.get_transform())
+            joined = line.get_linestyle() != "None"
+            meets = path.intersects_bbox(box, filled=False) if joined else False
+            if line.get_visible() and (meets or box.count_contains(path.vertices)):
+                found.append(line.get_label())
+    return found
 
 
 def labels(figure):

@@ -13,6 +13,7 @@ from pathlib import Path
 from docutils import nodes
 
 PICTURE = "hero.png"  # in `_static`: the first figure of the book, as its notebook has it
+SCALE = 0.68  # px of a page for one of a figure: seven inches are as wide as the text
 LONGEST = 200  # characters of a description: what a search engine shows
 REPEATED = {"exercise-content", "solution-content"}
 CITE = {
@@ -63,6 +64,15 @@ def true_minus(app, doctree):
     for text in list(doctree.findall(nodes.Text)):
         if isinstance(text.parent, PROSE) and HYPHEN.search(text):
             text.parent.replace(text, nodes.Text(HYPHEN.sub("\u2212", text)))
+
+
+def natural_sizes(app, doctree):
+    """Show figures at one scale, so that the letters of all have the size of the text."""
+    for image in doctree.findall(nodes.image):
+        path = Path(app.srcdir, image["uri"])
+        if path.suffix == ".png":
+            width = int.from_bytes(path.read_bytes()[16:20])  # the first of its header
+            image["width"] = f"{round(SCALE * width)}px"
 
 
 def describe(app, pagename, template, context, doctree):
@@ -117,5 +127,6 @@ def setup(app):
     app.config.html_search_scorer = str(Path(__file__).with_name("scorer.js"))
     app.connect("doctree-read", unique_ids)
     app.connect("doctree-read", true_minus)
+    app.connect("doctree-read", natural_sizes)
     app.connect("html-page-context", describe, priority=800)  # when the theme has its buttons
     return {"parallel_read_safe": True, "parallel_write_safe": True}

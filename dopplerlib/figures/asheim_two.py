@@ -74,7 +74,7 @@ def plane(
         ax.set(xlabel="x (m)", xlim=limits[0], ylim=limits[1])
         if titles:
             ax.set_title(titles[i])
-        ax.legend(loc="upper left")
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     axes[0].set_ylabel("y (m)")
 
 

@@ -29,7 +29,6 @@ def bands(
     for i, ax in enumerate(figure.subplots(1, 2)):
         if i == 1 and measured is not None:
             ax.plot(time, measured, ".", color=BOUND, ms=2.5, label="measured alone")
-            ax.set_ylim(top=measured.max() + 0.5 * np.ptp(measured))  # room for the legend
         ax.fill_between(
             time, *(x[:, i] + sign * 2 * deviation[:, i] for sign in (-1, 1)),
             color=OURS, alpha=0.25, lw=0, label="± 2 standard deviations",
@@ -37,7 +36,7 @@ def bands(
         ax.plot(time, x[:, i], color=OURS, label="estimate")
         ax.plot(time, truth[:, i], color=TRUTH, ls="--", label="truth")
         ax.set(xlabel="time (s)", ylabel=("position (m)", "velocity (m/s)")[i])
-        ax.legend(loc=("lower left", "upper right")[i])
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
 
 
 @drawing(7.0, 3.2)

@@ -173,7 +173,7 @@ def achievable(
     ax.set(yscale="log", xlabel=r"echo over noise, $C/N_0$ (dB Hz)", xticks=levels)
     ax.set(ylabel="median position error (mm)")
     ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    ax.legend()
+    figure.legend(loc="outside upper center", ncols=3)
 
 
 def _ms(lengths):

@@ -113,7 +113,7 @@ def nis(
         )  # fmt: skip
         for bound in interval:
             ax.axhline(bound, color=BOUND, ls="--", lw=1)
-        ax.legend(loc="upper left", facecolor="white", frameon=True, framealpha=0.9)
+        ax.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
         ax.set(ylabel="NIS", ylim=(0, 30))
     axes[-1].set(xlabel="time (s)", xlim=(0, 1))
 

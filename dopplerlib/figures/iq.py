@@ -285,7 +285,7 @@ def best_window(
     )  # fmt: skip
     ax.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"])
     ax.tick_params(axis="x", which="minor", labelbottom=False)
-    ax.legend(ncols=2)
+    figure.legend(loc="outside upper center", ncols=3)
 
 
 @drawing(7.0, 3.0)

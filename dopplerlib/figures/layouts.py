@@ -36,7 +36,7 @@ def gallery(figure: Figure, arrays: dict[str, RadarArray], notes: dict[str, str]
             back = x < -0.002
             ax.plot(y, z, "o", ms=9, mec=SENSOR, mew=2, color="white" if back else SENSOR)
             if back:
-                ax.annotate(f"{-1e3 * x:.0f}", (y, z), (11, -7), fontsize=7, **LABEL)
+                ax.annotate(f"{-1e3 * x:.0f}", (y, z), (11, -7), fontsize=8, **LABEL)
         ax.set_title(fill(f"{number}  {name}", 21), fontsize=9)
         ax.text(0.5, -0.02, notes[name], ha="center", va="top", transform=ax.transAxes, fontsize=9)
         ax.set(aspect="equal", xlim=(-0.23, 0.23), ylim=(-0.23, 0.23))

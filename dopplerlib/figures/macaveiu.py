@@ -182,5 +182,11 @@ def scene(figure: Figure, stages: dict[str, dict[str, Array]], truth: Array) -> 
         ax.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", lw=1, label="truth")
         ax.plot(0, 0, "^", color=TRUTH, ms=7)
         ax.set(title=title, xlabel="x (m)")
-        ax.legend(loc="upper left", fontsize=8, markerscale=3, framealpha=0.9, frameon=True)
+    handles = {
+        label: handle
+        for ax in axes
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)
+    }
+    place = "outside lower center"
+    figure.legend(handles.values(), handles, loc=place, ncols=len(handles), markerscale=3)
     axes[0].set(ylabel="y (m)", ylim=(-2, 85))

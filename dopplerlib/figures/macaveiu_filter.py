@@ -19,7 +19,7 @@ _SETTINGS = {
 }
 
 
-@drawing(7.0, 2.7)
+@drawing(7.0, 3.0)
 def three_panels(figure: Figure, time: Array, runs: VehicleRuns, run: int = 0) -> None:
     """Draw position and both speeds as in Figs 7 to 11: measurements, truth, estimate.
 
@@ -38,7 +38,8 @@ def three_panels(figure: Figure, time: Array, runs: VehicleRuns, run: int = 0) -
             (i,) = part
             lines = [(time, _KMH * one[:, i]) for one in (z, truth, x)]
             band = _KMH * np.quantile(runs.x[:, 1:, i], [0.025, 0.975], axis=0)
-            ax.fill_between(time[1:], *band, color=OURS, alpha=0.25, lw=0)
+            look = {"color": OURS, "alpha": 0.25, "lw": 0, "label": "95 % of all runs"}
+            ax.fill_between(time[1:], *band, **look)
             name = {1: "$v_x$", 3: "$v_y$"}[i]
             ax.set(xlabel="time (s)", ylabel=f"{name} (km/h)", title={1: "b", 3: "c"}[i])
             middle = (_KMH * truth[:, i].max() + _KMH * truth[:, i].min()) / 2
@@ -47,7 +48,7 @@ def three_panels(figure: Figure, time: Array, runs: VehicleRuns, run: int = 0) -
         ax.plot(*lines[0], "x", color=BOUND, ms=2.5, mew=0.5, alpha=0.6, label="measured")
         ax.plot(*lines[2], color=OURS, lw=1.4, label="estimate")
         ax.plot(*lines[1], color=TRUTH, ls="--", lw=1.2, label="truth")
-    axes[1].legend(loc="upper left", fontsize=8, framealpha=0.9, frameon=True)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
 
 
 @drawing(7.0, 6.0)
@@ -75,14 +76,14 @@ def claim_map(
             color = "black" if value > 0.6 else "white"
             middle = f"{100 * value:.0f}"
             ends = f"{100 * share[1, i, j]:.0f}\N{EN DASH}{100 * share[2, i, j]:.0f}"
-            ax.text(j, i + 0.17, middle, ha="center", va="center", color=color, size=8.5)
-            ax.text(j, i - 0.23, ends, ha="center", va="center", color=color, size=6.5)
+            ax.text(j, i + 0.17, middle, ha="center", va="center", color=color, size=9)
+            ax.text(j, i - 0.23, ends, ha="center", va="center", color=color, size=8)
             if not verdict[i, j]:
                 undecided = Rectangle((j - 0.5, i - 0.5), 1, 1, fc="none", ec=color, lw=0)
                 undecided.set(hatch="////", alpha=0.4)
                 ax.add_patch(undecided)
         _surround(ax, verdict > 0)
-        ax.plot(x, y, "s", mfc="none", mec=OURS, ms=24, mew=2)
+        ax.add_patch(Rectangle((x - 0.46, y - 0.46), 0.92, 0.92, fc="none", ec=OURS, lw=2))
         ax.grid(False)
         ax.set_xticks(range(len(widths)), [f"{one:g}" for one in widths])
         ax.set_yticks(range(len(heights)), [f"{one:g}" for one in heights])
@@ -132,7 +133,7 @@ def lags(
         ax.set(xscale="log", yscale="log", xlabel="velocity step $w$ (m/s)")
         ax.set_ylabel(("position error (m)", "speed error (m/s)")[i])
         ax.set_ylim(0.004, None)
-    ax.legend(loc="lower left", fontsize=8.5)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
 
 
 @drawing(7.0, 3.2)

@@ -1,6 +1,7 @@
 """Parts of all figures: the style file, the colors by meaning, and a fresh figure."""
 
 import inspect
+import re
 from collections.abc import Callable
 from functools import wraps
 from importlib.resources import as_file, files
@@ -9,11 +10,13 @@ from typing import Any, Concatenate, ParamSpec
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from .._hints import checked
 
 _P = ParamSpec("_P")
+_HYPHEN = re.compile(r"(?<![^\s(])-(?=\d)")
 STYLE = files(__package__) / "style.mplstyle"
 
 # One meaning, one color, all through the book.
@@ -38,7 +41,8 @@ def drawing(width: float = 7.0, height: float = 4.0):
     """Make a function that draws on a figure one that returns a new figure of this size in inches.
 
     The function gets the figure, in the style of the book, as its first argument; the others are
-    checked by their hints. The figure is not registered with pyplot: the caller alone holds it.
+    checked by their hints. A hyphen before a number becomes the minus that the axes have. The
+    figure is not registered with pyplot: the caller alone holds it.
     """
 
     def decorate(draw: Callable[Concatenate[Figure, _P], None]) -> Callable[_P, Figure]:
@@ -47,6 +51,8 @@ def drawing(width: float = 7.0, height: float = 4.0):
                 figure = plt.figure(figsize=(width, height))
                 plt.close(figure)
                 draw(figure, *args, **kwargs)
+                for text in figure.findobj(Text):
+                    text.set_text(_HYPHEN.sub("\N{MINUS SIGN}", text.get_text()))
             return figure
 
         made: Any = wraps(draw)(new)

@@ -86,6 +86,13 @@ def test_a_hyphen_before_a_number_is_printed_as_a_minus_but_not_in_code():
     assert page.repaired(table) == "<td>\u22121 (\u22122 to 3-4)</td><td><code>-1</code></td>"
 
 
+def test_figures_are_shown_at_one_scale_and_others_as_they_are(tmp_path):
+    (tmp_path / "a.png").write_bytes(bytes(16) + (1000).to_bytes(4) + bytes(8))
+    images = [nodes.image(uri="a.png", width="100%"), nodes.image(uri="b.svg")]
+    page.natural_sizes(SimpleNamespace(srcdir=tmp_path), section(*images))
+    assert [image.get("width") for image in images] == ["680px", None]
+
+
 def test_a_column_with_phrases_is_marked_and_one_of_numbers_is_not():
     table = (
         '<table class="results"><tr><td></td><th scope="col">n</th><th scope="col">why</th></tr>'

@@ -67,8 +67,8 @@ def test_a_scheme_has_an_arrow_between_any_two_blocks():
 
 def test_a_scene_names_its_tracks_once():
     groups = {"track 0": np.zeros((3, 2)), "track 1": np.ones((3, 2)), "object": np.ones((3, 2))}
-    (ax,) = draw.scene({"all": groups}, np.zeros((6, 4))).axes
-    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    figure = draw.scene({"all": groups, "again": groups}, np.zeros((6, 4)))
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["track", "object", "truth"]
     with pytest.raises(KeyError):
         draw.scene({"all": {"something": np.ones((3, 2))}}, np.zeros((6, 4)))
@@ -77,7 +77,7 @@ def test_a_scene_names_its_tracks_once():
 def test_every_figure_fits_the_page():
     relations, target = np.array([[2.0, 1.0], [-2.0, 1.0]]), np.array([[10.0, 3.0]])
     tones = [relations[0] @ target.T, relations[1] @ target.T]
-    pixels = (TIME[:4], TIME[:3] - 1, -np.ones((3, 4)), {"here": (1.0, -1.0)})
+    pixels = (TIME[:4], TIME[:3] - 1, -np.ones((3, 4)), {"here": (1.0, 0.0)})
     figures = {
         "sketches": draw.sketches(),
         "pulses": draw.pulses(TIME, 1j * TIME, TIME - 3, {"a": -TIME}),
