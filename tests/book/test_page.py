@@ -10,6 +10,7 @@ import pytest
 import yaml
 from docutils import nodes
 from docutils.utils import new_document
+from sphinx_exercise.nodes import exercise_enumerable_node, solution_node
 
 from tools.notebooks import HERO, first_picture
 
@@ -28,6 +29,7 @@ def extension(name):
 
 
 page, words, equations = extension("page"), extension("words"), extension("equations")
+exercises = extension("exercises")
 sooner = extension("sooner")
 
 
@@ -67,6 +69,22 @@ def test_ids_of_exercises_become_different_ones():
         "exercise-content-2",
         "sec-a",
     ]
+
+
+def test_an_exercise_says_whether_it_takes_paper_a_computer_or_an_afternoon():
+    def exercise(label, *classes):
+        content = nodes.section("", paragraph("Show it."))
+        return exercise_enumerable_node("", content, label=label, classes=list(classes))
+
+    cell = nodes.container(nb_element="cell_code")
+    tree = section(
+        *(exercise("a"), solution_node("", paragraph("So."), target_label="a")),
+        *(exercise("b"), solution_node("", section(cell), target_label="b")),
+        exercise("c", "project"),
+    )
+    exercises.grade(None, tree)
+    texts = [node.astext() for node in tree.findall(nodes.paragraph) if "grade" in node["classes"]]
+    assert texts == [exercises.BY_HAND, exercises.COMPUTER, exercises.PROJECT]
 
 
 def test_a_head_that_is_empty_is_none_and_one_with_text_stays():
