@@ -20,6 +20,7 @@ import sympy as sp
 
 from .._hints import checked
 from ._arguments import Expression
+from .block import Block, Stage
 from .doppler import SENSOR, STATE, WAVELENGTH, doppler_gradient, doppler_shift
 from .links import FRAME, SENSOR_VELOCITY, link_shift
 
@@ -76,6 +77,31 @@ def family_state():
     y, z, w, v_y, v_z = SCALE**2 * y, SCALE**2 * z, SCALE * w, SCALE * v_y, SCALE * v_z
     x = sp.sqrt(SCALE**2 * A - RADIUS**2 - y**2 - z**2)
     return sp.Matrix([x, y, z, (w - y * v_y - z * v_z) / x, v_y, v_z])
+
+
+def family_block():
+    """Return the program of `family_state`."""
+    seen = list(zip(INVARIANTS, invariants(), strict=True))
+    (A, square), (w, along) = seen[0], seen[3]
+    new = sp.symbols("x_new y_new z_new v_x_new v_y_new v_z_new", real=True)
+    x, y, z, v_x, v_y, v_z = new
+    _, start_y, start_z, _, start_v_y, start_v_z = STATE
+    scaled = [
+        (y, SCALE**2 * start_y), (z, SCALE**2 * start_z),
+        (v_y, SCALE * start_v_y), (v_z, SCALE * start_v_z),
+        (x, sp.sqrt(SCALE**2 * A - RADIUS**2 - y**2 - z**2)),
+        (v_x, (SCALE * w - y * v_y - z * v_z) / x),
+    ]  # fmt: skip
+    return Block(
+        name="ring_family_state",
+        summary="State at t in the family that a ring of radius r cannot tell apart, for x > 0.",
+        inputs=(*STATE, RADIUS, SCALE),
+        stages=(
+            Stage("what the ring sees of the state", [(A, square), (w, along)]),
+            Stage("the same of the scaled state, solved for it", scaled),
+        ),
+        outputs=new,
+    )
 
 
 @cache

@@ -6,6 +6,7 @@ import sympy as sp
 
 from dopplerlib import ring_family, ring_family_direction
 from dopplerlib.derive import doppler, ring
+from dopplerlib.derive.printers import python_function
 
 STATES = np.array([[0.833, 0.111, 0.092, -0.75, -0.125, -0.018], [0.4, -0.5, 0.3, 0.2, 1.0, -0.7]])
 
@@ -58,6 +59,10 @@ def test_numbers_and_symbols_agree(state, scale):
     values = dict(zip(doppler.STATE, map(float, state), strict=True)) | {ring.RADIUS: 0.2}
     family = ring.family_state().subs(values | {ring.SCALE: scale})
     direction = ring.family_direction().subs(values)
+    program = {}
+    exec(python_function(ring.family_block()), {"sqrt": np.sqrt}, program)
+    printed = program["ring_family_state"](*map(float, state), 0.2, scale)
+    np.testing.assert_allclose(printed, np.array(family, float)[:, 0], rtol=1e-13, atol=1e-14)
     # A dozen roundings of numbers near one.
     np.testing.assert_allclose(
         ring_family(state, 0.2, scale), np.array(family, float)[:, 0], rtol=1e-13, atol=1e-14
