@@ -6,7 +6,7 @@ setup(
     packages=[*find_packages(include=["dopplerlib*"]), "dopplerlib.data", "dopplerlib.results"],
     package_dir={"dopplerlib.data": "data", "dopplerlib.results": "results"},
     package_data={
-        "": ["*.html", "*.mplstyle", "*.pyi", "py.typed"],
+        "": ["*.mplstyle", "*.pyi", "py.typed"],
         "dopplerlib.data": ["**"],
         "dopplerlib.results": ["**"],
     },

@@ -1,4 +1,4 @@
-"""Derive the formulas; print the numerical kernels, dopplerlib/kernels, and C99, firmware."""
+"""Derive the formulas and print them: kernels, C99 of the firmware, JavaScript of the book."""
 
 import textwrap
 from pathlib import Path
@@ -11,6 +11,7 @@ from dopplerlib.derive import __main__ as derive
 from dopplerlib.derive.firmware import firmware_sources
 from dopplerlib.estimation.extended_kalman import gate_bounds
 from dopplerlib.systems.mittermaier2016 import reported
+from tools import explorables
 from tools.command import parser, start
 
 FIRMWARE = Path(__file__).resolve().parents[1] / "firmware"
@@ -99,12 +100,14 @@ def firmware_files():
 
 
 def main(argv=None):
-    """Write kernels and firmware."""
+    """Write kernels, firmware and what the explorables compute with."""
     parser(__doc__).parse_args(argv)
     derive.main()
     for name, text in firmware_files().items():
         write_text(FIRMWARE / name, text)
         print(f"firmware/{name}")
+    write_text(explorables.FOLDER / explorables.KERNELS, explorables.kernels())
+    print(f"book/_explorables/{explorables.KERNELS}")
 
 
 if __name__ == "__main__":

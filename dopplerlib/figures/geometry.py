@@ -1,15 +1,13 @@
 """Figures of the chapter on geometry: lines of sight, iso-Doppler cones, sensitivities."""
 
-import json
 from collections.abc import Sequence
-from importlib.resources import files
 
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .._hints import Array, checked
+from .._hints import Array
 from ..model.doppler import doppler_shift
 from ..model.iso_doppler import iso_doppler_directions
 from ..model.radar_array import RadarArray
@@ -26,8 +24,6 @@ from .style import (
     project,
     sensor_colors,
 )
-
-_TEMPLATE = files(__package__) / "demonstration.html"
 
 
 @drawing(7, 3.6)
@@ -213,25 +209,3 @@ def sensitivities(figure: Figure, time: Array, jacobian: Array, sigma_f: float) 
         )
         ax.legend()
         ax.margins(x=0)
-
-
-@checked
-def demonstration(javascript: str, array: RadarArray, x: Array) -> str:
-    """Draw a plane scene with sliders, its Doppler shifts and iso-Doppler lines, as HTML.
-
-    javascript: Source of the function ``doppler_shift``, as `dopplerlib.derive.printers` prints it.
-    array: Sensors in the plane z = 0.
-    x (6,): State with which the scene starts, in m and m/s, in the plane z = 0.
-
-    Returns
-    -------
-    str
-        Loads nothing from elsewhere, and shows a sentence where JavaScript does not run.
-    """
-    settings = {
-        "sensors": array.positions.round(6).tolist(),
-        "dopplerPerSpeed": round(array.doppler_per_speed, 6),
-        "x": [float(value) for value in x],
-    }
-    text = _TEMPLATE.read_text(encoding="utf-8")
-    return text.replace("/*SETTINGS*/", json.dumps(settings)).replace("/*FORMULA*/", javascript)

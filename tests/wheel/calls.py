@@ -74,14 +74,12 @@ def judged(dl):
 def figure_calls(dl, np):
     """Return {figure: function without arguments that draws it}: all files that figures need.
 
-    These are the style, which every figure has; the page of the demonstration; and data. What else
-    a module of the figures could lack outside of a checkout, importing it tells.
+    These are the style, which every figure has, and data. What else a module of the figures could
+    lack outside of a checkout, importing it tells.
     """
     f, paper, rng = dl.figures, dl.systems.mittermaier2016, np.random.default_rng(1)
-    line, x0 = dl.RadarArray.linear(2, 0.2), [1.0, 0, 0, -1, 0, 0]
     return {
         "style": lambda: f.style.STYLE.read_text(encoding="utf-8"),
-        "demonstration": lambda: f.geometry.demonstration("", line, x0),
         "figure6": lambda: f.figure6.errors(
             paper.run_example(1, rng=rng, keep=()), paper.reported().figure6
         ),
