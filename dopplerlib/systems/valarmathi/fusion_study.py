@@ -1,6 +1,7 @@
 """All algorithms on all paths at all signal-to-noise ratios: a saved study, and each cell again."""
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Annotated
 
 import numpy as np
@@ -92,6 +93,11 @@ def study_table(seed: Index = SEED) -> WindowTable:
     >>> study_table().best.shape
     (7, 6)
     """
+    return _table(seed)
+
+
+@cache
+def _table(seed):
     return window_table(rng=np.random.default_rng(seed))
 
 
