@@ -1,5 +1,10 @@
 // What a page is asked, whatever it shows: each function returns a list of complaints.
 window.book = (() => {
+  // What is asked of a page that is on its way to another theme would be true of neither.
+  const still = document.createElement("style");
+  still.textContent = "*, ::before, ::after { transition: none !important; animation: none !important; }";
+  document.head.append(still);
+
   const name = (element) => {
     const marks = [...element.classList].slice(0, 2).map((mark) => `.${mark}`);
     const text = element.textContent.trim().replace(/\s+/g, " ").slice(0, 40);
