@@ -277,6 +277,8 @@ function mountExplorable(root, { start, controls, measure, draw: picture, say })
       node.focus({ preventScroll: true });
       event.preventDefault();
     });
+    // Of a group of shapes a browser does not heed touch-action: the page would scroll.
+    node.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
     node.addEventListener("pointermove", (event) => {
       if (!off || !node.hasPointerCapture(event.pointerId)) return;
       const [x, y] = at(event);

@@ -25,6 +25,18 @@ def shown(tab, root):
     return json.loads(tab.on(root, "e.dataset.numbers"))
 
 
+def touch(tab, selector, down):
+    """Put a finger on the middle of an element, and move it down by some px."""
+    box = tab.on(selector, "e.getBoundingClientRect().toJSON()")
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    tab.call("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+    for part in range(1, 7):
+        place = {"x": x, "y": y + down * part / 6}
+        tab.call("Input.dispatchTouchEvent", type="touchMove", touchPoints=[place])
+        tab.settle()
+    tab.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+
 def test_the_plane_scene_answers_with_the_shifts_of_the_library(tab):
     tab.open("geometry.html")
     root = awake(tab, "shifts")
@@ -58,4 +70,8 @@ def test_the_plane_scene_answers_with_the_shifts_of_the_library(tab):
 
     tab.on("#shifts-again", "e.click()")
     assert shown(tab, root) == first
+    before = tab.run("scrollY")
+    touch(tab, f"{root} [data-grip=target] .ring", down=90)
+    assert shown(tab, root)["x"][1] < first["x"][1] - 0.1  # the target follows all the way
+    assert tab.run("scrollY") == before
     assert tab.complaints == []
