@@ -23,6 +23,7 @@ from . import observability as observability
 from . import own_recording as own_recording
 from . import real_shifts as real_shifts
 from . import road as road
+from . import scaling as scaling
 from . import sombatsatien as sombatsatien
 from . import start as start
 from . import stopping as stopping
