@@ -14,6 +14,8 @@ from numba import config, types
 from numba.core.cgutils import get_or_insert_function
 from numba.extending import intrinsic
 
+# Arrays of kernels that share no place, so that what is written to one leaves the other as it was.
+_APART = "work", "sensor"
 _WIDTH = 4  # lanes that one instruction takes at once
 
 
@@ -40,7 +42,7 @@ def straight(kernel, one=False):
         kinds = [*arguments[: 2 * arrays + 1], *[types.float64] * (len(names) - arrays - 2)]
         kinds[1 : 2 * arrays : 2] = [types.intp] * arrays
         lanes = arguments[2 * arrays].literal_value
-        return types.void(*kinds), lambda *built: _write(kernel, arrays, lanes, one, *built)
+        return types.void(*kinds), lambda *built: _write(kernel, names[:arrays], lanes, one, *built)
 
     form = [f"{word}_{i}" for i in range(arrays) for word in ("array", "at")]
     form += ["lanes", *names[arrays + 2 :]]
@@ -59,17 +61,20 @@ def where_known(measured, value, otherwise):
     return value if measured == measured else otherwise
 
 
-def _write(kernel, arrays, lanes, one, context, builder, signature, arguments):
+def _write(kernel, names, lanes, one, context, builder, signature, arguments):
     """Write a kernel into the function that `builder` builds."""
     data = []
-    for i in range(0, 2 * arrays, 2):
+    for i in range(0, 2 * len(names), 2):
         array = context.make_array(signature.args[i])(context, builder, arguments[i])
         data.append(builder.gep(array.data, [arguments[i + 1]]))
     width = 1 if one else min(lanes, _WIDTH)
     number = ir.DoubleType() if width == 1 else ir.VectorType(ir.DoubleType(), width)
     for first in range(0, 1 if one else lanes, width):
-        rows = [_Rows(builder, pointer, number, 1 if one else lanes, first) for pointer in data]
-        numbers = [_spread(builder, value, number) for value in arguments[2 * arrays + 1 :]]
+        rows = [
+            _Rows(builder, pointer, number, 1 if one else lanes, first, _tag(builder.module, name))
+            for pointer, name in zip(data, names, strict=True)
+        ]
+        numbers = [_spread(builder, value, number) for value in arguments[2 * len(names) + 1 :]]
         values = [_Value(builder, value) for value in numbers]
         kernel(*rows, lanes if one else 1, 0, *values)
     return context.get_dummy_value()
@@ -90,11 +95,20 @@ def _constant(number, value):
     return ir.Constant(number, several)
 
 
+def _tag(module, name):
+    """Return the type that LLVM's analysis of aliases sees (TBAA), or None for any."""
+    if name not in _APART:
+        return None
+    zero = ir.Constant(ir.IntType(64), 0)
+    kind = module.add_metadata([name, module.add_metadata(["rows"]), zero])
+    return module.add_metadata([kind, kind, zero])
+
+
 class _Rows:
     """An array `work` of which a kernel reads and writes rows."""
 
-    def __init__(self, builder, pointer, number, lanes, first):
-        self._builder, self._number = builder, number
+    def __init__(self, builder, pointer, number, lanes, first, tag):
+        self._builder, self._number, self._tag = builder, number, tag
         self._pointer, self._lanes, self._first = pointer, lanes, first
 
     def _place(self, row):
@@ -103,11 +117,17 @@ class _Rows:
         return self._builder.bitcast(place, self._number.as_pointer())
 
     def __getitem__(self, row):
-        return _Value(self._builder, self._builder.load(self._place(row), align=8))
+        loaded = self._builder.load(self._place(row), align=8)
+        return _Value(self._builder, self._tagged(loaded))
 
     def __setitem__(self, row, value):
         value = value.value if isinstance(value, _Value) else _constant(self._number, value)
-        self._builder.store(value, self._place(row), align=8)
+        self._tagged(self._builder.store(value, self._place(row), align=8))
+
+    def _tagged(self, instruction):
+        if self._tag is not None:
+            instruction.set_metadata("tbaa", self._tag)
+        return instruction
 
 
 class _Value:

@@ -127,9 +127,12 @@ def _row(i, j):
 def factor(P0, at, memory, lane, lanes):
     """Write U and, in the place of its diagonal of ones, D, so that P0 = U D U'.
 
+    Return whether `P0` is symmetric, finite and positive definite beyond doubt.
+
     What a direction leaves of its variance may be nothing, or lost in the rounding of `P0`. Then D
     is that rounding: 2e-15 of the variance, and zero where the variance is.
     """
+    certain = True
     for j in range(5, -1, -1):
         D = variance = P0[at + 7 * j]
         for k in range(j + 1, 6):
@@ -137,12 +140,15 @@ def factor(P0, at, memory, lane, lanes):
             D -= U * U * memory[_row(k, k) * lanes + lane]
         least = _ROUNDING * variance if variance > 0.0 else 0.0
         memory[_row(j, j) * lanes + lane] = D if D > least else least
+        certain = certain and D > least  # neither is true of what is not finite
         for i in range(j):
             product = P0[at + 6 * i + j]
+            certain = certain and product == P0[at + 6 * j + i]
             for k in range(j + 1, 6):
                 weighted = memory[_row(i, k) * lanes + lane] * memory[_row(k, k) * lanes + lane]
                 product -= weighted * memory[_row(j, k) * lanes + lane]
             memory[_row(i, j) * lanes + lane] = product / D if D > least else 0.0
+    return certain
 
 
 @_inline

@@ -40,19 +40,22 @@ def compiled(lanes):
         memory, sensors, samples, columns, z, T, noise, variance, x0, P0,
         x, P, innovation, S, nis, updated,
     ):  # fmt: skip
-        """Return whether no run is predicted onto a sensor at its first sample."""
+        """Return whether no run starts with a doubtful P0 or is predicted onto a sensor at once."""
         compiled_in  # noqa: B018  (see fingerprint)
-        clear = True
+        good = True
         runs = len(nis) // samples
         # An array of size zero says that nobody wants this output.
         for first in range(0, runs, lanes):
             width = min(lanes, runs - first)
             for lane in range(width):
                 read_state(memory, lane, x0, (first + lane) * 6, lanes)
-                factor(P0, (first + lane) * 36, memory, lane, lanes)
-                clear = clear and clear_of_sensors(memory, sensors, lanes, lane, T[0])
+                certain = factor(P0, (first + lane) * 36, memory, lane, lanes)
+                clear = clear_of_sensors(memory, sensors, lanes, lane, T[0])
+                good = good and certain and clear
             for k in range(samples):
-                step = k if len(T) > 1 else 0  # one interval for all samples, or each its own
+                # One interval and one variance for all samples, or each its own.
+                step = k if len(T) > 1 else 0
+                row = k * sensors if len(variance) > sensors else 0
                 for n in range(sensors):
                     sensor = (SENSORS + n * kernel.SENSOR_ROWS + kernel.MEASUREMENT) * lanes
                     for lane in range(width):
@@ -60,7 +63,7 @@ def compiled(lanes):
                         memory[sensor + lane] = measured
                 cycle(
                     memory, sensors, lanes, width, T[step], noise, step * 6 * columns, columns,
-                    variance, k * sensors, len(S) > 0,
+                    variance, row, len(S) > 0,
                 )  # fmt: skip
                 if len(P):
                     covariance(memory, 0, lanes)
@@ -75,10 +78,10 @@ def compiled(lanes):
                         write_innovations(memory, sensors, lanes, lane, innovation, at * sensors)
                     if len(S):
                         write_innovation_covariance(
-                            memory, sensors, lanes, lane, variance, k * sensors,
+                            memory, sensors, lanes, lane, variance, row,
                             S, at * sensors * sensors,
                         )  # fmt: skip
-        return clear
+        return good
 
     return filter_records
 

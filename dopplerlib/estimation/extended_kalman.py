@@ -137,14 +137,19 @@ def ekf(
     z = _measurements(z, array)
     T = _intervals(T, z.shape[-2])
     columns = _noise_columns(T, sigma_a, noise)
-    variance = _variance(sigma_f, z.shape[-2:])
+    rows = 1 if type(sigma_f) is float else z.shape[-2]
+    variance = _variance(sigma_f, (rows, len(array)))
     _checks.one_of("gate", gate, (None, "upper", "two-sided", "soft"))
     soft = gate == "soft"
     probability = _checks.probability("gate_probability", gate_probability)
     lower, upper = _bounds("upper" if soft else gate, len(array), probability)
     clocks = _clock_noise(n > 6, sigma_clock=sigma_clock, sigma_drift=sigma_drift)
     x0 = _checks.finite("x0", x0, (n,))
-    P0 = _checks.covariance("P0", P0, n, definite=False)
+    general = soft or isinstance(array, DopplerLinks)
+    # The compiled loop factors P0 anyway, and says if a longer look is needed.
+    whole = general or z.ndim > 2
+    P0 = _covariance(P0, n) if whole else _checks.real("P0", P0)
+    _checks.check_shape("P0", P0, (n, n))
     keep = _checks.some_of("keep", keep, _OPTIONAL)
     if workers is not None:
         workers = _checks.whole_number("workers", workers)
@@ -153,7 +158,8 @@ def ekf(
     runs = prod(batch)
     x0 = _checks.each_run("x0", x0, batch, (n,))
     P0 = _checks.each_run("P0", P0, batch, (n, n))
-    if soft or isinstance(array, DopplerLinks):
+    if general:
+        variance = np.broadcast_to(variance, z.shape[-2:])
         array, motion = general_motion(array, T, samples, sigma_a, noise, *clocks)
         bounds = (lower, upper, soft) if gate else None
         track = filter_general(z, array, x0, P0, motion, variance, bounds)
@@ -189,17 +195,23 @@ def ekf(
         return run(own(z), variance, T, columns, own(x0), own(P0), *map(own, results))
 
     if runs <= lanes:
-        clear = run(*inputs, *results)
+        good = run(*inputs, *results)
     else:
         workers = workers or os.cpu_count() or 1
         with ThreadPoolExecutor(workers) as pool:
-            clear = all(pool.map(part, *_parts(runs, lanes, workers)))
-    if not clear:
+            # A list: `all` stops at the first False, and what has not begun by then never would.
+            good = all([*pool.map(part, *_parts(runs, lanes, workers))])
+    if not good:
+        _covariance(P0, n)
         check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
     for value in out.values():
         if value is not None:
             value.setflags(False)
     return filled(Track, out)
+
+
+def _covariance(P0, n):
+    return _checks.covariance("P0", P0, n, definite=False)
 
 
 @cache
