@@ -56,8 +56,8 @@ def open_browser(path, home):
         with child(start, **fds) as process:
             os.close(to_read)
             os.close(to_write)
+            tab = Tab(commands, answers, home)
             try:
-                tab = Tab(commands, answers, home)
                 yield tab
             finally:
                 with suppress(OSError):

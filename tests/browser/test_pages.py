@@ -11,6 +11,7 @@ import pytest
 import yaml
 
 from tests.book.test_book import BOOK, listed
+from tests.browser.test_explorables import awake
 
 THEMES = ("light", "dark")
 NARROW, MIDDLE, WIDE = 360, 768, 1440
@@ -24,6 +25,9 @@ TOC = yaml.safe_load((BOOK / "_toc.yml").read_text(encoding="utf8"))
 # What Sphinx adds, and one page of the library's source.
 ADDED = ("genindex", "search", "_modules/dopplerlib/model/doppler")
 PAGES = [*listed(TOC), *ADDED]
+EXPLORABLES = """
+    [...document.querySelectorAll("[data-explorable]")].map((element) => element.dataset.explorable)
+"""
 QUESTIONS = Path(__file__).with_name("page.js").read_text(encoding="utf8")
 
 
@@ -51,6 +55,8 @@ def test_a_page_is_whole_and_accessible_at_every_width_and_in_both_themes(
     tab, page, axe, looked_at
 ):
     tab.open(f"{page}.html", NARROW)
+    for name in tab.run(EXPLORABLES):
+        awake(tab, name)
     tab.run(QUESTIONS)
     found = [f"{page}: {text}" for text in [*tab.run("book.broken()"), *tab.complaints]]
     tab.complaints.clear()
