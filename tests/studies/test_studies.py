@@ -10,6 +10,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from importlib import import_module
 from types import ModuleType, NoneType
 
+import numpy as np
 import pytest
 
 from dopplerlib.replication.documents import documents
@@ -151,3 +152,22 @@ def test_a_cluster_without_dask_names_the_command_that_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(ModuleNotFoundError, match=r'pip install "dopplerlib\[cluster\]"'):
         command.main(["stopping", "--scheduler", "tcp://localhost:1"])
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("consistent_tracker", {"case": "A", "tracker": "ekf", "assumed": "right"}),
+        ("turned_ring", {"gate": "none", "start": "as drawn", "runs": 2}),
+        ("yardsticks", {"case": "D"}),
+    ],
+)
+def test_a_run_has_the_same_bits_alone_and_among_others(name, settings):
+    """So that a study may be divided in any way."""
+    study = import_module(f"studies.{name}")
+    seed, runs = study.PARAMETERS["seed"], range(2, 5)
+    together = study.compute(settings, seed, runs)
+    for place, run in enumerate(runs):
+        alone = study.compute(settings, seed, range(run, run + 1))
+        for key, values in together.items():
+            np.testing.assert_array_equal(alone[key][0], values[place])
