@@ -31,6 +31,7 @@ _HOME = by_name(
         "estimation.nonlinear_kalman": "ekf_records ukf",
         "estimation.online": "ekf_online ekf_records_online ukf_online",
         "estimation.imm": "imm imm_start imm_step",
+        "estimation.imm_online": "imm_online",
         "estimation.imm_records": "ImmModel",
         "estimation.smoother": "rts_smooth",
         "estimation.steady_state": "steady_state_gain steady_state_lag",

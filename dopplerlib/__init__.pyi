@@ -21,6 +21,7 @@ from .estimation.extended_update import ekf_update as ekf_update
 from .estimation.imm import imm as imm
 from .estimation.imm import imm_start as imm_start
 from .estimation.imm import imm_step as imm_step
+from .estimation.imm_online import imm_online as imm_online
 from .estimation.imm_records import ImmModel as ImmModel
 from .estimation.initial_estimate import InitialEstimate as InitialEstimate
 from .estimation.linear_kalman import kf as kf
@@ -105,6 +106,7 @@ __all__ = [
     "gate_bounds",
     "gnn_assign",
     "imm",
+    "imm_online",
     "imm_start",
     "imm_step",
     "innovation_mean",

@@ -17,6 +17,7 @@ from dopplerlib.estimation import (
     extended_update,
     gaussian_sum,
     imm,
+    imm_online,
     linear_kalman,
     maximum_likelihood,
     nonlinear_kalman,
@@ -89,6 +90,10 @@ CALLS = {
     } | nonlinear,
     imm.imm: {
         "z": z, "models": models, "x0": x, "P0": P, "transition": switch, "mode0": [0.5, 0.5],
+    },
+    imm_online.imm_online: {
+        "models": [ImmModel(F, q * Q, H3, three) for q in (1, 4)], "x0": x, "P0": P,
+        "transition": switch, "mode0": [0.5, 0.5],
     },
     imm.imm_start: {"models": models, "x0": x, "P0": P, "mode0": [0.5, 0.5]},
     imm.imm_step: {

@@ -285,6 +285,7 @@ MEANT = (
     "ekf_online",
     "ekf_records_online",
     "ukf_online",
+    "imm_online",
 )  # NaN and infinity mean something there
 HUGE = [1e155, 1e200, 1e308]
 

@@ -7,6 +7,7 @@ from . import extended_update as extended_update
 from . import gaussian as gaussian
 from . import gaussian_sum as gaussian_sum
 from . import imm as imm
+from . import imm_online as imm_online
 from . import imm_records as imm_records
 from . import importance_sampling as importance_sampling
 from . import initial_estimate as initial_estimate

@@ -60,11 +60,11 @@ def linear_measurement(
     `there` says which components are measured, and may lack the axes of the runs; by default those
     that are not NaN.
     """
-    there = ~np.isnan(z) if there is None else there
 
     def correct(k, x, P):
         innovation = gaussian.innovation(x, z[..., k, :], H[k])
-        return innovation, *gaussian.gain(P, H[k], R[k], there[..., k, :])
+        known = ~np.isnan(z[..., k, :]) if there is None else there[..., k, :]
+        return innovation, *gaussian.gain(P, H[k], R[k], known)
 
     return correct
 

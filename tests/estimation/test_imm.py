@@ -10,6 +10,7 @@ from scipy.stats import multivariate_normal
 
 from dopplerlib import coordinated_turn, coordinated_turn_jacobian, ekf_records, kf, ukf
 from dopplerlib.estimation.imm import imm, imm_start, imm_step
+from dopplerlib.estimation.imm_online import imm_online
 from dopplerlib.estimation.imm_records import ImmModel
 from dopplerlib.model.motion import cwna_process_noise, ncv_transition
 
@@ -327,6 +328,25 @@ def test_one_sample_at_a_time_gives_the_same_bits(z, models, start):
     assert state == track.last
     whole = imm_step(z[:, -1], imm(z[:, :-1], models, SWITCH, *start).last, models, SWITCH)
     assert whole == track.last
+
+
+@pytest.mark.parametrize(
+    ("z", "models", "start"),
+    [(Z, MODELS, (x0, P0)), (seen(3), turning(), (STARTS, SPREADS))],
+    ids=["linear", "turning"],
+)
+def test_a_prepared_estimator_gives_the_same_bits(z, models, start):
+    z = z[0].copy()
+    z[4, 0], z[7] = np.nan, np.nan
+    track = imm(z, models, SWITCH, *start)
+    update = imm_online(models, SWITCH, *start)
+    with pytest.raises(ValueError, match=r"^z must .*got"):
+        update(z)  # changes nothing
+    for k, sample in enumerate(z):
+        state = update(sample)
+        for name in ("x", "P", "mode"):
+            np.testing.assert_array_equal(getattr(state, name), getattr(track, name)[k])
+    assert state == track.last
 
 
 def test_runs_together_are_the_runs_alone():
