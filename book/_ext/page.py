@@ -122,11 +122,23 @@ def _phrases(table):
     return ROW.sub(marked, table) if columns else table
 
 
+def drop_old_pages(app, exception):
+    """Remove the pages of an earlier build whose source is gone: their links go astray."""
+    if exception:
+        return
+    kept = {*app.env.found_docs, "index", "genindex", "search"}
+    for path in Path(app.outdir).rglob("*.html"):
+        page = path.relative_to(app.outdir).with_suffix("").as_posix()
+        if page not in kept and not page.startswith(("_modules/", "_static/")):
+            path.unlink()
+
+
 def setup(app):
     """Register the extension with Sphinx."""
     app.config.html_search_scorer = str(Path(__file__).with_name("scorer.js"))
     app.connect("doctree-read", unique_ids)
     app.connect("doctree-read", true_minus)
     app.connect("doctree-read", natural_sizes)
+    app.connect("build-finished", drop_old_pages)
     app.connect("html-page-context", describe, priority=800)  # when the theme has its buttons
     return {"parallel_read_safe": True, "parallel_write_safe": True}

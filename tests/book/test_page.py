@@ -111,6 +111,18 @@ def test_figures_are_shown_at_one_scale_and_others_as_they_are(tmp_path):
     assert [image.get("width") for image in images] == ["680px", None]
 
 
+def test_a_page_whose_source_is_gone_goes_with_it(tmp_path):
+    for name in ("a", "gone", "search", "_modules/b"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / f"{name}.html").touch()
+    app = SimpleNamespace(outdir=tmp_path, env=SimpleNamespace(found_docs={"a"}))
+    page.drop_old_pages(app, ValueError())
+    assert (tmp_path / "gone.html").exists()
+    page.drop_old_pages(app, None)
+    left = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*.html")}
+    assert left == {"a.html", "search.html", "_modules/b.html"}
+
+
 def test_a_column_with_phrases_is_marked_and_one_of_numbers_is_not():
     table = (
         '<table class="results"><tr><td></td><th scope="col">n</th><th scope="col">why</th></tr>'
