@@ -63,6 +63,11 @@ def skip_runs(rng: np.random.Generator, first: Index) -> np.random.Generator:
     numpy.random.Generator
         For functions that give each of their runs a child of `rng`.
 
+    Raises
+    ------
+    ValueError
+        If `rng` is seeded by something else than a `numpy.random.SeedSequence`.
+
     Examples
     --------
     >>> rng = skip_runs(np.random.default_rng(1), 10_000_000)
@@ -71,6 +76,8 @@ def skip_runs(rng: np.random.Generator, first: Index) -> np.random.Generator:
     True
     """
     own = rng.bit_generator.seed_seq
+    if not isinstance(own, np.random.SeedSequence):
+        raise ValueError(f"rng must be seeded by a SeedSequence, got {own!r}")
     children = {"spawn_key": own.spawn_key, "pool_size": own.pool_size}
     further = np.random.SeedSequence(own.entropy, **children, n_children_spawned=first)
     return np.random.Generator(type(rng.bit_generator)(further))

@@ -339,3 +339,13 @@ def test_skipped_runs_have_the_children_that_numpy_spawns(kind):
     skipped = skip_runs(parent(), 1000)
     assert [child.normal() for child in skipped.spawn(3)] == expected
     assert skipped.normal() == parent().normal()
+
+
+def test_a_generator_that_no_seed_sequence_has_seeded_is_refused():
+    class Words:
+        def generate_state(self, count, dtype=np.uint32):
+            return np.arange(count, dtype=dtype)
+
+    np.random.bit_generator.ISeedSequence.register(Words)
+    with pytest.raises(ValueError, match="rng must be seeded by a SeedSequence"):
+        skip_runs(np.random.Generator(np.random.PCG64(Words())), 3)
