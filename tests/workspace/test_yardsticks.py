@@ -39,6 +39,8 @@ def test_the_exact_posterior_is_consistent_and_no_tracker_beats_it():
     """Of truths from the prior: mean NEES is 6 within four standard errors (6e-5 each)."""
     for case in "AB":
         y = yardsticks.saved_yardsticks(case)
+        # A mean over what came out would hide a run in which the posterior did not.
+        np.testing.assert_array_equal(np.isnan(y.nees), np.isnan(y.bank_nees))
         for nees, own, bank in zip(y.nees.T, y.position.T, y.bank_position.T, strict=True):
             nees = nees[~np.isnan(nees)]
             assert abs(nees.mean() - 6) < 4 * nees.std() / len(nees) ** 0.5
