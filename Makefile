@@ -112,9 +112,12 @@ kernels: $(VENV)/.ready  ## derive the formulas, print the numerical kernels and
 study: $(VENV)/.ready  ## run the study NAME=... and write results/NAME.* (list them without NAME)
 	$(PY) -m studies $(NAME) $(if $(WORKERS),--workers $(WORKERS))
 
+# What the book shows is in benchmarks/measured; ROUNDS=3 is quick and rough, 7 are made without it.
+MEASURED := $(basename $(notdir $(wildcard benchmarks/measured/*.json)))
+
 .PHONY: bench
-bench: $(BENCH)/.ready  ## run benchmarks/NAME.py; without NAME the filter beside other libraries
-	$(BENCH)/bin/python benchmarks/$(or $(NAME),ekf).py
+bench: $(BENCH)/.ready  ## run benchmarks/NAME.py; without NAME all that the book shows, ten minutes
+	for name in $(or $(NAME),$(MEASURED)); do $(BENCH)/bin/python benchmarks/$$name.py || exit; done
 
 .PHONY: lock
 lock: $(if $(filter .venv-uv/%,$(UV)),.venv-uv/.ready)  ## renew all lock files

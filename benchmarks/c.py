@@ -13,8 +13,8 @@ import time
 from pathlib import Path
 
 import numpy as np
-from ekf import SCENARIO, interleaved, spread
-from online import load
+from ekf import SCENARIO
+from measuring import interleaved, load, spread
 
 from dopplerlib import Scenario, ekf, simulate
 from dopplerlib.derive import ekf as derive

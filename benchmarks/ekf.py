@@ -17,11 +17,11 @@ from pathlib import Path
 
 import numpy as np
 import peers
+from measuring import ROUNDS, interleaved, load, progress, spread
 
 from dopplerlib import Scenario, constant_velocity, ekf, simulate
 
 SCENARIO = Path(__file__).parents[1] / "data" / "mittermaier2016" / "scenario.toml"
-ROUNDS = 7
 RUNS = 1_000
 MANY_RUNS = 10_000
 AGREEMENT = 1e-8
@@ -166,20 +166,6 @@ def ten_thousand(scenario, ours, rng):
     print("\n")
 
 
-def interleaved(title, clocks, clock=time.perf_counter):
-    """Return {name: seconds of each round}, after one round that does not count."""
-    times = {name: np.empty(ROUNDS) for name in clocks}
-    for k in range(-1, ROUNDS):
-        progress(f"{title}: " + ("warming up" if k < 0 else f"round {k + 1} of {ROUNDS}"))
-        for name, (run, repetitions) in clocks.items():
-            start = clock()
-            for _ in range(repetitions):
-                run()
-            if k >= 0:
-                times[name][k] = (clock() - start) / repetitions
-    return times
-
-
 def first_calls():
     """Return a line on what a fresh process pays before its first result."""
     with tempfile.TemporaryDirectory() as cache:
@@ -206,25 +192,9 @@ def machine():
     )
 
 
-def load():
-    return ", ".join(f"{value:.1f}" for value in os.getloadavg())
-
-
 def prepared(run, z):
     """Return `z` in the form that the filter `run` wants."""
     return run.prepare(z) if hasattr(run, "prepare") else z
-
-
-def spread(values):
-    """Return the median with least and most, to three digits."""
-    numbers = (np.median(values), np.min(values), np.max(values))
-    middle, least, most = (np.format_float_positional(v, 3, fractional=False, trim="-")
-                           for v in numbers)  # fmt: skip
-    return f"{middle} ({least} to {most})"
-
-
-def progress(what):
-    print(what, file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

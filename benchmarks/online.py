@@ -5,14 +5,14 @@ filters agree to 1e-8 before any time is taken. The loop at 1 kHz is an example,
 ``python benchmarks/online.py live`` runs that alone.
 """
 
-import os
 import sys
 import time
 
 import numpy as np
 import peers
-from ekf import AGREEMENT, SCENARIO, interleaved, progress, spread
+from ekf import AGREEMENT, SCENARIO
 from filterpy.kalman import ExtendedKalmanFilter
+from measuring import interleaved, load, progress, spread
 
 from dopplerlib import (
     Scenario,
@@ -138,10 +138,6 @@ def live(s):
         f"{median:.1f} µs, 99.9 % {rare:.0f} µs, most {latency.max() * 1e6:.0f} µs; "
         f"{np.mean(latency > s.T):.2%} later than the next sample; alarms at {alarms}.\n"
     )
-
-
-def load():
-    return ", ".join(f"{value:.1f}" for value in os.getloadavg())
 
 
 if __name__ == "__main__":

@@ -1,25 +1,21 @@
 """Throughput of a Monte Carlo study by its size, in this process and in two others.
 
-``python benchmarks/scaling.py`` writes ``benchmarks/scaling.json``, which the chapter *Scaling a
-study* shows: two minutes.
+``make bench NAME=scaling`` writes ``measured/scaling.json``, which the chapter *Scaling a study*
+shows: two minutes.
 """
 
-import json
-import os
-import platform
 import resource
-import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
-from datetime import UTC, datetime
 from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from measuring import progress, save
+
 from dopplerlib.evaluation.monte_carlo import run_rngs, run_study
 from dopplerlib.workspace.comparison import tracker_study
 
-FILE = Path(__file__).with_suffix(".json")
 SETTINGS = {"case": "A", "tracker": "ekf", "assumed": "right"}
 SIZES = 10, 100, 1000, 10_000
 MOST = 1000  # runs of a chunk
@@ -51,26 +47,17 @@ def timed(study, runs, workers, chunk):
         wall, processor = time.perf_counter() - begun[0], processor_time() - begun[1]
         size = sum(path.stat().st_size for path in Path(folder).iterdir())
     row = {"runs": runs, "workers": workers, "chunk": chunk, "wall": wall, "processor": processor}
-    print(row, file=sys.stderr)
+    progress(row)
     return row | {"bytes": size}
 
 
 def main():
-    """Measure, and write what was measured beside this file."""
+    """Measure, and write what was measured."""
     for study in (nothing, tracker_study):
         run_study(study, SETTINGS, 2, seed=1)  # compiled, or loaded
     rows = [timed(tracker_study, n, w, min(MOST, -(-n // 10))) for n in SIZES for w in WORKERS]
     engine = [timed(nothing, 100_000, 1, chunk) for chunk in (100, 1000, 10_000)]
-    found = {
-        "date": datetime.now(UTC).date().isoformat(),
-        "processors": len(os.sched_getaffinity(0)),
-        "machine": platform.machine(),
-        "load": os.getloadavg()[2],
-        "settings": SETTINGS,
-        "rows": rows,
-        "engine": engine,
-    }
-    FILE.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    save("scaling", {"settings": SETTINGS, "rows": rows, "engine": engine})
 
 
 if __name__ == "__main__":
