@@ -15,6 +15,7 @@ from . import workspace as workspace
 from .chain.baseband import Baseband as Baseband
 from .chain.track import IqTrack as IqTrack
 from .chain.track import track_iq as track_iq
+from .estimation.ekf_online import ekf_online as ekf_online
 from .estimation.extended_kalman import ekf as ekf
 from .estimation.extended_kalman import gate_bounds as gate_bounds
 from .estimation.extended_update import ekf_update as ekf_update
@@ -30,7 +31,6 @@ from .estimation.linear_kalman import kf_update as kf_update
 from .estimation.maximum_likelihood import ml_initialize as ml_initialize
 from .estimation.nonlinear_kalman import ekf_records as ekf_records
 from .estimation.nonlinear_kalman import ukf as ukf
-from .estimation.online import ekf_online as ekf_online
 from .estimation.online import ekf_records_online as ekf_records_online
 from .estimation.online import ukf_online as ukf_online
 from .estimation.smoother import rts_smooth as rts_smooth

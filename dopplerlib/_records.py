@@ -7,7 +7,7 @@ import numpy as np
 
 _T = TypeVar("_T")
 _NUMBERS = "biufc"  # kinds of arrays that are compared by value
-_new = object.__new__
+_new, _set = object.__new__, object.__setattr__
 _SAMPLE = 64  # values of an array that its hash looks at
 
 
@@ -50,9 +50,12 @@ def record(cls: type[_T]) -> type[_T]:
 
 
 def filled(cls: type[_T], fields: dict[str, Any]) -> _T:
-    """Return a record of all its fields, arrays read-only, in a tenth of the time of `cls`."""
+    """Return a record of all its fields, a dict that becomes its own, with read-only arrays.
+
+    It takes a tenth of the time of `cls`.
+    """
     made = _new(cls)
-    made.__dict__.update(fields)
+    _set(made, "__dict__", fields)
     return made
 
 

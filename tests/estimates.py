@@ -13,6 +13,7 @@ import numpy as np
 from dopplerlib import RadarArray, TrackManager, doppler_shift, kf
 from dopplerlib.estimation import (
     colored_errors,
+    ekf_online,
     extended_kalman,
     extended_update,
     gaussian_sum,
@@ -69,7 +70,7 @@ CALLS = {
         "points": "unscented", "alpha": 0.5, "beta": 2.0, "kappa": 0.5,
         "wrap": (0,), "gate": "upper", "gate_probability": 0.9, "iterations": 2,
     },
-    online.ekf_online: {
+    ekf_online.ekf_online: {
         "array": RadarArray.ring(3, 0.2), "x0": state, "P0": 0.01 * np.eye(6), "T": 0.001,
         "sigma_a": 0.4, "sigma_f": 0.4, "keep": ("P", "S", "innovation"),
     },

@@ -2,6 +2,7 @@
 from . import colored_errors as colored_errors
 from . import covariances as covariances
 from . import densities as densities
+from . import ekf_online as ekf_online
 from . import extended_kalman as extended_kalman
 from . import extended_update as extended_update
 from . import gaussian as gaussian

@@ -19,7 +19,7 @@ SEEN = _KEPT + 21  # number of sensors that are there
 UPDATES = SEEN + 1
 SENSORS = UPDATES + 1
 
-# Behind the interval of a sample that is filtered alone: columns of noise, variances, results.
+# Behind the interval of a sample that is filtered alone: columns of noise, variances, counts.
 SAMPLE_NOISE, SAMPLE_VARIANCE = 1, 19
 
 # A pivot of a covariance that is a smaller share of its variance is rounding.

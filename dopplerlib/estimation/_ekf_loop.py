@@ -90,7 +90,8 @@ def compiled(lanes):
 def compiled_step():
     """Return two functions: one writes a start to a memory, one filters a sample.
 
-    All that the cycle needs and gives is in the memory, see `SampleMemory`.
+    All that the cycle needs is in the memory, see `SampleMemory`. What it gives goes to `results`,
+    at the place that the memory names: x, then what is wanted of P, innovation and S.
     """
     compiled_in = fingerprint(kernel, _straight, _ekf_cycle)
 
@@ -101,23 +102,33 @@ def compiled_step():
         factor(P0, 0, memory, 0, 1)
 
     @cached_njit
-    def filter_sample(memory):
+    def filter_sample(memory, results):
         """Return whether the state was updated, or, if nothing was done, that z is infinite."""
         compiled_in  # noqa: B018  (see fingerprint)
-        sensors, columns = int(memory[len(memory) - 2]), int(memory[len(memory) - 1])
+        sensors, columns = int(memory[len(memory) - 6]), int(memory[len(memory) - 5])
         for n in range(sensors):
             measured = memory[SENSORS + n * kernel.SENSOR_ROWS + kernel.MEASUREMENT]
             if measured == np.inf or measured == -np.inf:
                 return INFINITE
         own = SENSORS + sensors * kernel.SENSOR_ROWS + 3 + 5 * sensors
         noise, variance = own + SAMPLE_NOISE, own + SAMPLE_VARIANCE
-        P = variance + sensors
-        innovation, S = P + 36, P + 36 + sensors
-        cycle(memory, sensors, 1, 1, memory[own], memory, noise, columns, memory, variance, True)
-        covariance(memory, 0, 1)
-        write_covariance(memory, 0, memory, P, 1)
-        write_innovations(memory, sensors, 1, 0, memory, innovation)
-        write_innovation_covariance(memory, sensors, 1, 0, memory, variance, memory, S)
+        wanted, place = variance + sensors + 2, variance + sensors + 5
+        with_S = memory[wanted + 2] > 0.0
+        cycle(memory, sensors, 1, 1, memory[own], memory, noise, columns, memory, variance, with_S)
+        at = int(memory[place])
+        write_state(memory, 0, results, at, 1)
+        at += 6
+        if memory[wanted] > 0.0:
+            covariance(memory, 0, 1)
+            write_covariance(memory, 0, results, at, 1)
+            at += 36
+        if memory[wanted + 1] > 0.0:
+            write_innovations(memory, sensors, 1, 0, results, at)
+            at += sensors
+        if with_S:
+            write_innovation_covariance(memory, sensors, 1, 0, memory, variance, results, at)
+            at += sensors * sensors
+        memory[place] = at
         return UPDATED if memory[UPDATES] > 0.0 else REFUSED
 
     return begin, filter_sample
@@ -126,17 +137,12 @@ def compiled_step():
 class SampleMemory:
     """The memory of `compiled_step`, with names for its parts."""
 
-    def __init__(self, positions, doppler_per_speed, lower, upper, columns):
+    def __init__(self, positions, doppler_per_speed, lower, upper, columns, wanted):
         N = len(positions)
-        sizes = {"T": 1, "noise": 18, "variance": N, "P": 36, "innovation": N, "S": N * N}
-        sizes["counts"] = 2
-        more = sum(sizes.values())
-        self.all = new_memory(1, positions, doppler_per_speed, lower, upper, more)
-        places = np.cumsum(list(sizes.values()))[:-1]
-        self.T, self.noise, self.variance, P, self.innovation, S, counts = np.split(
-            self.all[-more:], places
-        )
-        counts[:] = N, columns
-        self.P, self.S = P.reshape(6, 6), S.reshape(N, N)
-        self.x = self.all[kernel.PREDICTED : kernel.PREDICTED + 6]
+        tail = SAMPLE_VARIANCE + N + 6
+        self.all = new_memory(1, positions, doppler_per_speed, lower, upper, tail)
+        own = self.all[-tail:]
+        self.T, self.noise = own[:1], own[SAMPLE_NOISE:SAMPLE_VARIANCE]
+        self.variance, self.place = own[SAMPLE_VARIANCE:-6], own[-1:]
+        own[-6:-1] = N, columns, *wanted
         self.z = self.all[SENSORS + kernel.MEASUREMENT :: kernel.SENSOR_ROWS][:N]

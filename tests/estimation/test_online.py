@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from dopplerlib import RadarArray, doppler_jacobian, doppler_shift, ekf, ekf_records, ukf
-from dopplerlib.estimation.online import ekf_online, ekf_records_online, ukf_online
+from dopplerlib.estimation.ekf_online import ekf_online
+from dopplerlib.estimation.online import ekf_records_online, ukf_online
 
 T = 1e-3
 RING = RadarArray.ring(6, 0.2)
@@ -52,6 +53,19 @@ def test_intervals_may_vary_and_come_back():
         assert_same_bits(update(sample, **given), track, k)
 
 
+def test_deviations_may_vary_and_come_back():
+    z = record()
+    sigma_f = np.full((len(z), 6), 0.4)
+    sigma_f[[3, 4, 17]] = np.random.default_rng(2).uniform(0.2, 0.9, (3, 6))
+    sigma_f[30:33] = 0.7
+    track = ekf(z, RING, START, P0, T, 0.4, sigma_f)
+    update, mine = ekf_online(RING, START, P0, T, 0.4, 0.4), np.empty(6)
+    for k, sample in enumerate(z):
+        mine[:] = sigma_f[k]  # the same array with other numbers
+        given = {"sigma_f": 0.7 if k in (30, 31) else mine} if sigma_f[k, 0] != 0.4 else {}
+        assert_same_bits(update(sample, **given), track, k)
+
+
 def test_two_targets_do_not_share_a_state():
     z, other = record(), record(seed=2)
     track = ekf(z, RING, START, P0, T, 0.4, 0.4)
@@ -61,18 +75,26 @@ def test_two_targets_do_not_share_a_state():
         assert_same_bits(one(z[k]), track, k)
 
 
-def test_keep_leaves_the_rest_out():
-    found = ekf_online(RING, START, P0, T, 0.4, 0.4, keep=["P"])(record()[0])
-    assert found.innovation is None
-    assert found.S is None
-    assert found.P.shape == (6, 6)
+@pytest.mark.parametrize("keep", [(), ("P",), ("innovation",), ("S",), ("S", "P")])
+def test_keep_leaves_the_rest_out(keep):
+    z = record()
+    track = ekf(z, RING, START, P0, T, 0.4, 0.4, keep=keep)
+    update = ekf_online(RING, START, P0, T, 0.4, 0.4, keep=keep)
+    for k, sample in enumerate(z):
+        found = update(sample)
+        for name in FIELDS:
+            got, want = getattr(found, name), getattr(track, name)
+            assert (got is None) == (want is None)
+            assert want is None or np.asarray(got).tobytes() == want[k].tobytes()
 
 
 def test_results_stay_as_they_were():
     update = ekf_online(RING, START, P0, T, 0.4, 0.4)
-    first = update(record()[0])
+    first, *rest = record()
+    first = update(first)
     kept = {name: np.array(getattr(first, name)) for name in FIELDS}
-    update(record()[1])
+    for sample in rest:
+        update(sample)
     for name, value in kept.items():
         np.testing.assert_array_equal(getattr(first, name), value)
     with pytest.raises(ValueError, match="read-only"):
@@ -123,13 +145,14 @@ def test_a_sample_that_is_none_is_named_and_changes_nothing(function, sample):
     assert update(z[1]) == other(z[1])
 
 
-@pytest.mark.parametrize("T", [0.0, -1.0, np.inf, np.nan, "1", [1.0, 2.0]])
-def test_an_interval_that_is_none_is_named_and_changes_nothing(T):
+@pytest.mark.parametrize("name", ["T", "sigma_f"])
+@pytest.mark.parametrize("value", [0.0, -1.0, np.inf, np.nan, "1", [1.0, 2.0]])
+def test_a_setting_that_is_none_is_named_and_changes_nothing(name, value):
     z = record()
     update, other = (ekf_online(RING, START, P0, 1e-3, 0.4, 0.4) for _ in range(2))
     assert update(z[0]) == other(z[0])
-    with pytest.raises(ValueError, match=r"^T must .*got"):
-        update(z[1], T)
+    with pytest.raises(ValueError, match=rf"^{name} must .*got"):
+        update(z[1], **{"T": 2e-3, "sigma_f": 0.7} | {name: value})
     assert update(z[1]) == other(z[1])
 
 
