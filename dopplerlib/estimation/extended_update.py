@@ -105,10 +105,20 @@ def linearized(
     """
     m = z.shape[-1]
     wrap = _checks.components("wrap", wrap, m)
-    predicted = _checks.finite("h(x)", _checks.called("h", h, x), (m,))
-    J = _checks.finite("H(x)", _checks.called("H", H, x), (m, x.shape[-1]))
+    predicted, J = predicted_measurement(x, m, h, H)
     _checks.check_leading(**{"x": (x, 1), "z": (z, 1), "h(x)": (predicted, 1), "H(x)": (J, 2)})
     return wrapped(z - predicted, wrap), J
+
+
+def predicted_measurement(
+    x: FloatArray, m: int, h: Callable[..., Any], H: Callable[..., Any]
+) -> tuple[FloatArray, FloatArray]:
+    """Return h(x) (..., m) and H(x) (..., m, n) of states x (..., n), which are unchecked.
+
+    ValueError as by `linearized`.
+    """
+    predicted = _checks.finite("h(x)", _checks.called("h", h, x), (m,))
+    return predicted, _checks.finite("H(x)", _checks.called("H", H, x), (m, x.shape[-1]))
 
 
 def wrapped(difference: FloatArray, wrap: Iterable[int]) -> FloatArray:

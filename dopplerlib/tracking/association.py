@@ -123,14 +123,23 @@ def gnn_assign(cost: ArrayLike, gate: float) -> IntArray:
     from scipy.optimize import linear_sum_assignment  # here: it takes long to load
 
     cost, gate = _costs(cost, gate)
-    tracks, detections = cost.shape
-    # More than all tracks alone: such a pair is never part of the cheapest assignment.
-    forbidden = (abs(gate) + 1) * (2 * tracks + 2)
-    pairs = np.where(cost <= gate, cost, forbidden)
-    alone = np.where(np.eye(tracks, dtype=bool), gate, forbidden)
-    row, column = linear_sum_assignment(np.hstack([pairs, alone]))
-    assigned = np.full(tracks, -1)
-    assigned[row] = np.where(column < detections, column, -1)
+    allowed = cost <= gate
+    assigned = np.full(len(cost), -1)
+    # A pair of which neither has another is made: it costs no more than its track alone.
+    row, column = np.nonzero(allowed)
+    choices = np.bincount(row, minlength=len(cost))
+    only = (choices[row] == 1) & (np.bincount(column)[column] == 1)
+    assigned[row[only]] = column[only]
+    track = np.flatnonzero((choices > 0) & (assigned < 0))
+    if len(track):
+        detection = np.flatnonzero(allowed[track].any(axis=0))
+        part = np.ix_(track, detection)
+        # More than all tracks alone: such a pair is never part of the cheapest assignment.
+        forbidden = (abs(gate) + 1) * (2 * len(track) + 2)
+        pairs = np.where(allowed[part], cost[part], forbidden)
+        alone = np.where(np.eye(len(track), dtype=bool), gate, forbidden)
+        _, column = linear_sum_assignment(np.hstack([pairs, alone]))
+        assigned[track] = np.append(detection, np.full(len(track), -1))[column]
     return assigned
 
 

@@ -7,7 +7,11 @@ from .. import _checks
 from .._hints import Count, Index, checked
 from .._records import record
 
-TENTATIVE, CONFIRMED, DELETED = "tentative", "confirmed", "deleted"
+Status = Literal["tentative", "confirmed", "deleted"]
+Life = tuple[Status, tuple[bool, ...], int, int]  # the fields of `TrackLife`
+TENTATIVE: Status = "tentative"
+CONFIRMED: Status = "confirmed"
+DELETED: Status = "deleted"
 
 
 @checked
@@ -27,7 +31,7 @@ class TrackLife:
         Number of scans in a row without a detection.
     """
 
-    status: Literal["tentative", "confirmed", "deleted"]
+    status: Status
     recent: Annotated[tuple[bool, ...], partial(_checks.some_of, choices=(True, False))]
     age: Count
     misses: Index
@@ -79,8 +83,7 @@ class TrackManager:
         -------
         TrackLife
         """
-        status = CONFIRMED if self.hits == 1 else TENTATIVE
-        return TrackLife(status, recent=(True,), age=1, misses=0)
+        return TrackLife(*begun(self))
 
     @checked
     def advance(self, life: TrackLife, detected: bool) -> TrackLife:
@@ -98,15 +101,32 @@ class TrackManager:
         TrackLife
             Once deleted, a track stays so.
         """
-        if life.status == DELETED:
-            return life
-        recent = (*life.recent, detected)[-self.window :]
-        misses = 0 if detected else life.misses + 1
-        age, status = life.age + 1, life.status
-        if status == CONFIRMED:
-            status = DELETED if misses >= self.delete_after else CONFIRMED
-        elif sum(recent) >= self.hits:
-            status = CONFIRMED
-        elif age >= self.window:
-            status = DELETED
-        return TrackLife(status, recent, age, misses)
+        return TrackLife(*advanced(self, life.status, life.recent, life.age, life.misses, detected))
+
+
+def begun(manager: TrackManager) -> Life:
+    """Return the fields of the status of a new track, unchecked: a tracker has thousands."""
+    return CONFIRMED if manager.hits == 1 else TENTATIVE, (True,), 1, 0
+
+
+def advanced(
+    manager: TrackManager,
+    status: Status,
+    recent: tuple[bool, ...],
+    age: int,
+    misses: int,
+    detected: bool,
+) -> Life:
+    """Return the fields of the status of a track after one more scan, unchecked."""
+    if status == DELETED:
+        return status, recent, age, misses
+    recent = (*recent, detected)[-manager.window :]
+    misses = 0 if detected else misses + 1
+    age += 1
+    if status == CONFIRMED:
+        status = DELETED if misses >= manager.delete_after else CONFIRMED
+    elif sum(recent) >= manager.hits:
+        status = CONFIRMED
+    elif age >= manager.window:
+        status = DELETED
+    return status, recent, age, misses

@@ -10,9 +10,9 @@ from .._hints import checked, exactly
 from .._records import record
 from .._typing import ArrayLike, BoolArray, FloatArray, IntArray
 from ..estimation import densities, gaussian
-from ..estimation.extended_update import linearized
+from ..estimation.extended_update import predicted_measurement, wrapped
 from .association import gnn_assign
-from .management import CONFIRMED, DELETED, TrackManager
+from .management import CONFIRMED, DELETED, TrackManager, advanced, begun
 
 
 def _whole(name, value):
@@ -164,14 +164,18 @@ def track_scans(
     exclusive = _checks.one_boolean("exclusive", exclusive)
 
     def gated(x, P, z):
-        """Return innovations, gains, updated covariances, and NIS or infinity outside the gate."""
-        nu, J = linearized(x[:, None], z, h, H, wrap)
-        nu = _checks.each_run("h(x)", nu, (len(x), len(z)), (m,))
-        J = _checks.each_run("H(x)", J, (len(x), 1), (m, n))[:, 0]
+        """Return predictions, gains, updated covariances, and NIS or infinity outside the gate."""
+        predicted, J = predicted_measurement(x, m, h, H)
+        predicted = _checks.each_run("h(x)", predicted, (len(x),), (m,))
+        J = _checks.each_run("H(x)", J, (len(x),), (m, n))
         noise = _checks.covariance("R(x)", _checks.called("R", R, x), m) if callable(R) else R
         K, updated, S = gaussian.gain(P, J, noise)
-        cost = densities.quadratic_forms(nu, S)
-        return nu, K, updated, np.where(cost <= size, cost, np.inf)
+        track, place = _close(predicted, z, S, size, wrap)
+        nu = wrapped(z[place] - predicted[track], wrap)
+        nis = densities.quadratic_form(nu, S[track])
+        cost = np.full((len(x), len(z)), np.inf)
+        cost[track, place] = np.where(nis <= size, nis, np.inf)
+        return predicted, K, updated, cost
 
     for number, scan in enumerate(scans):
         z = _checks.detections(f"scans[{number}]", scan, m)
@@ -190,7 +194,7 @@ def track_scans(
                 _checks.check_shape("Q(x)", step, (len(x), n, n))
             x, P = gaussian.predict(x, P, F, step)
             _checks.estimates("F, Q", x, P)
-            nu, K, updated, cost = gated(x, P, z)
+            predicted, K, updated, cost = gated(x, P, z)
             first = np.array([track["confirmed"][-1] for track in alive])
             assigned = np.full(len(alive), -1)
             for some, open_to_them in ((first, True), (~first, may_start)):
@@ -199,7 +203,8 @@ def track_scans(
                     assigned[some] = _assigned(assign, pairs, size)
                     free[assigned[assigned >= 0]] = False
             seen = assigned >= 0
-            x[seen] = gaussian.moved(x[seen], K[seen], nu[seen, assigned[seen]])
+            nu = wrapped(z[assigned[seen]] - predicted[seen], wrap)
+            x[seen] = gaussian.moved(x[seen], K[seen], nu)
             P[seen] = updated[seen]
             _checks.estimates("h, H, R", x, P)
             for i, track in enumerate(alive):
@@ -216,10 +221,27 @@ def track_scans(
                 if np.isinf(cost[kept, i]).all():
                     kept.append(i)
             left, x, P = left[kept], x[kept], P[kept]
-        begun = [_begin(number, *state, manager) for state in zip(x, P, places[left], strict=True)]
-        done += begun
-        alive = [track for track in alive if track["life"].status != DELETED] + begun
+        started = [_begin(number, *one, manager) for one in zip(x, P, places[left], strict=True)]
+        done += started
+        alive = [track for track in alive if track["life"][0] != DELETED] + started
     return [_frozen(track) for track in done]
+
+
+def _close(predicted, z, S, size, wrap):
+    """Return pairs of a track and a detection, among them all that are inside the gate.
+
+    The NIS is at least that of the first component: a search in the sorted detections finds
+    the few of each track, where the gate alone would look at all.
+    """
+    if 0 in wrap:
+        return np.divmod(np.arange(len(predicted) * len(z)), max(len(z), 1))
+    reach = np.sqrt((1 + 1e-9) * size * S[:, 0, 0])  # not less by rounding
+    order = np.argsort(z[:, 0])
+    first = np.searchsorted(z[order, 0], predicted[:, 0] - reach)
+    count = np.searchsorted(z[order, 0], predicted[:, 0] + reach, side="right") - first
+    track = np.repeat(np.arange(len(predicted)), count)
+    before = np.cumsum(count) - count  # pairs of the tracks before
+    return track, order[np.arange(len(track)) - (before - first)[track]]
 
 
 def _assigned(assign, cost, gate):
@@ -250,25 +272,26 @@ def _started(start, z, n):
 
 
 def _begin(number, x, P, detection, manager):
-    life = manager.start()
-    return {
-        "life": life,
-        "scan": [number],
-        "x": [x],
-        "P": [P],
-        "detection": [detection],
-        "confirmed": [life.status == CONFIRMED],
-    }
+    track = {name: [] for name in ("scan", "x", "P", "detection", "confirmed")}
+    _append(track, begun(manager), number, x, P, detection)
+    return track
 
 
 def _extend(track, number, x, P, detection, manager):
-    track["life"] = life = manager.advance(track["life"], detection >= 0)
-    if life.status != DELETED:
-        track["scan"].append(number)
-        track["x"].append(x)
-        track["P"].append(P)
-        track["detection"].append(detection)
-        track["confirmed"].append(life.status == CONFIRMED)
+    life = advanced(manager, *track["life"], bool(detection >= 0))
+    if life[0] == DELETED:
+        track["life"] = life
+    else:
+        _append(track, life, number, x, P, detection)
+
+
+def _append(track, life, number, x, P, detection):
+    track["life"] = life
+    track["scan"].append(number)
+    track["x"].append(x)
+    track["P"].append(P)
+    track["detection"].append(detection)
+    track["confirmed"].append(life[0] == CONFIRMED)
 
 
 def _frozen(track):

@@ -146,6 +146,31 @@ def test_a_target_that_passes_behind_the_radar_keeps_its_track():
     np.testing.assert_allclose(turned.x, -seen.x, rtol=1e-9, atol=1e-9)
 
 
+def test_crowded_scans_give_the_tracks_of_a_gate_over_all_pairs():
+    """Component 0 as an angle that never wraps: then all pairs are gated, and no search picks any.
+
+    Both components have turned to the other place in a third look, which searches along the other.
+    """
+    rng, side = np.random.default_rng(38), 3.0  # rad: no difference comes near pi
+    F2, Q2 = ncv_transition(T, dim=2, order="derivative"), np.eye(4) / 500
+    scans = [rng.uniform(0, side, (40, 2)) for _ in range(5)]
+    covariance = np.diag([0.01, 0.01, 0.04, 0.04])
+
+    def tracks(order, wrap=()):
+        pick = np.eye(4)[order]
+        found = track_scans(
+            [z[:, order] for z in scans], F2, Q2, lambda x: x @ pick.T, lambda x: pick,
+            np.diag([0.01, 0.02])[order][:, order],
+            lambda z: (np.hstack([z[:, order], 0 * z]), np.tile(covariance, (len(z), 1, 1))),
+            MANAGER, wrap=wrap,
+        )  # fmt: skip
+        return [track.detection.tolist() for track in found]
+
+    searched = tracks([0, 1])
+    assert searched == tracks([0, 1], wrap=(0,)) == tracks([1, 0])
+    assert sum(len(detections) > 2 for detections in searched) > 20  # it is crowded
+
+
 def test_a_detection_with_a_nan_is_not_there_and_the_others_keep_their_numbers():
     rng = np.random.default_rng(37)
     z = positions(rng, 0.0, 1.0)
