@@ -15,6 +15,7 @@ from scipy.stats import chi2
 
 from dopplerlib import RadarArray, chi2_interval, constant_velocity, doppler_shift
 from dopplerlib._files import write_text
+from dopplerlib.chain.collision import _normal
 from dopplerlib.derive import doppler, ekf, ring
 from dopplerlib.derive.printers import javascript_function
 from dopplerlib.estimation.extended_kalman import gate_bounds
@@ -23,17 +24,47 @@ from dopplerlib.model.motion import dwna_gain
 from dopplerlib.systems import asheim2015 as thesis
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.workspace.stop_study import LABELS, THRESHOLDS, saved_stops
-from dopplerlib.workspace.stopping import RULES, judge_stops
+from dopplerlib.workspace.stopping import RADIUS, RULES, judge_stops
 from tools.command import parser, start
 
 FOLDER = Path(__file__).resolve().parent.parent / "book" / "_explorables"
 KERNELS = "kernels.js"
-COMPUTING = {"shifts", "blind", "filter"}  # those that use the printed kernels
+TRACKER = "tracker.js"
+COMPUTING = {"shifts", "blind"}  # those that use the printed kernels
+TRACKING = {"hero", "filter"}  # and those that also run a filter
 TRACKERS = "truth", "bank", "paper", "ekf_bayes", "ekf", "ukf", "ring_iekf"
 LENGTHS = 21, 31, 41, 61, 81, 101, 151, 201, 251, 301, 401, 501, 601, 701, 801  # samples
 MOMENTS = 0.999  # confidence of the intervals that needles are compared with
+POINTS = 64  # states that are tried for a probability of collision
 BIN, LAST = 0.025, 39  # s of lead, and the number of the last class
 WIDTH = 360  # of a still picture in pixels: it is read on a phone, and printed
+
+
+def _hero():
+    """Return the simulation example of the paper, its first estimate, and a rule to stop."""
+    scenario, table = paper.reported().scenario, paper.reported().table2
+    gain, _ = dwna_gain(np.array(scenario.T), 1.0, "shared")
+    return {
+        "sensors": scenario.array.positions.tolist(),
+        "perSpeed": scenario.array.doppler_per_speed,
+        "x0": scenario.x0.tolist(),
+        "error": (table.x_ml - scenario.x0).round(6).tolist(),
+        "T": scenario.T,
+        "columns": gain.T.tolist(),
+        "sigmaA": scenario.sigma_a,
+        "sigmaF": scenario.sigma_f,
+        "fades": 30,  # samples, as in the chapter on consistency
+        "samples": 1000,
+        "every": 10,
+        "runs": 10,
+        "window": 100,
+        "disc95": chi2.ppf(0.95, 2),
+        "neesMedian": chi2.median(6),
+        "radius": RADIUS,
+        "within": RULES["within 0.3 s"][0],
+        "threshold": 0.5,
+        "normal": _normal(POINTS).T.tolist(),
+    }
 
 
 def _shifts():
@@ -170,6 +201,7 @@ def _by_lead(lead):
 
 
 SETTINGS = {
+    "hero": _hero,
     "shifts": _shifts,
     "blind": _blind,
     "filter": _filter,
@@ -186,7 +218,8 @@ def settings(name):
 
 def scripts(name):
     """Return the names of the files that an explorable consists of, in the order of loading."""
-    return ["explorable.js", *[KERNELS] * (name in COMPUTING), f"{name}.js"]
+    shared = [KERNELS] * (name in COMPUTING | TRACKING) + [TRACKER] * (name in TRACKING)
+    return ["explorable.js", *shared, f"{name}.js"]
 
 
 def kernels():

@@ -2,10 +2,6 @@
 "use strict";
 
 explorables.filter = (() => {
-  // Places in the 21 factors of what the time update changes, and of what it needs besides.
-  const CHANGED = [3, 4, 5, 9, 10, 14], NEEDED = [16, 17, 19];
-  const ZERO = [0, 0, 0, 0, 0, 0];
-  const DIAGONAL = [0, 6, 11, 15, 18, 20];
   const DIAL = { from: 0.1, to: 1e5, log: true };
   const times = (exponent) => `× ${draw.brief(10 ** exponent)}`;
 
@@ -31,51 +27,19 @@ explorables.filter = (() => {
     return { truth, z };
   }
 
-  // The filter, of the printed kernels: states, NIS, whether the gate let a sample in, and the
-  // covariance of a sample, which is not wanted of all.
   function track(settings, state, z) {
     const { start, spread, T, columns, sigmaA, sigmaF, sensors, perSpeed, gates } = settings;
     const variance = (sigmaF * 10 ** state.R) ** 2, sigma = sigmaA * 10 ** state.Q;
-    const noise = columns.map((column) => column.map((value) => sigma * value));
-    const [lower, upper] = gates[state.gate] ?? [-Infinity, Infinity];
-    let x = start, factors = Array(21).fill(0);
-    DIAGONAL.forEach((i) => (factors[i] = (spread * 10 ** state.P0) ** 2));
-    const kept = [], found = { x: [], nis: [], updated: [] };
-    for (const measured of z) {
-      const inputs = [...CHANGED, ...NEEDED].map((i) => factors[i]);
-      const [px, py, pz, ...changed] = kernels.predict(...x, ...inputs, T);
-      x = [px, py, pz, ...x.slice(3)];
-      CHANGED.forEach((i, n) => (factors[i] = changed[n]));
-      for (const g of noise) factors = kernels.add_noise.apply(null, factors.concat(g));
-      let after = factors, correction = ZERO, nis = 0;
-      const seen = sensors.map((s, n) => kernels.linearize(...x, measured[n], ...s, perSpeed));
-      for (const one of seen) {
-        const out = kernels.update.apply(null, after.concat(correction, nis, one, variance));
-        after = out.slice(0, 21);
-        correction = out.slice(21, 27);
-        nis = out[27];
-      }
-      const updated = lower <= nis && nis <= upper;
-      if (updated) {
-        x = x.map((value, i) => value + correction[i]);
-        factors = after;
-      }
-      found.x.push(x);
-      kept.push(factors);
-      found.nis.push(nis);
-      found.updated.push(updated);
-    }
-    return { ...found, P: (k) => square(kernels.covariance.apply(null, kept[k])) };
+    const P = tracker.diagonal(Array(6).fill((spread * 10 ** state.P0) ** 2));
+    return tracker.run({ x: start, P }, z, {
+      sensors, perSpeed, T,
+      noise: columns.map((column) => column.map((value) => sigma * value)),
+      variance: () => variance,
+      gate: gates[state.gate],
+    });
   }
 
-  function square(upper) {
-    const P = Array.from({ length: 6 }, () => Array(6));
-    let place = 0;
-    for (let i = 0; i < 6; i++) for (let j = i; j < 6; j++) P[i][j] = P[j][i] = upper[place++];
-    return P;
-  }
-
-  const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
+  const { mean } = tracker;
 
   // All runs of a setting; moving along time asks for nothing new.
   let last = null;
@@ -89,11 +53,7 @@ explorables.filter = (() => {
       return { truth, error, ...found };
     });
     const every = Array.from({ length: settings.samples / settings.every }, (_, i) => (i + 1) * settings.every - 1);
-    const nees = every.map((i) =>
-      mean(records.map(({ P, error }) => algebra.distance(P(i), error[i]))));
-    const nis = every.filter((i) => i + 1 >= settings.window).map((i) =>
-      mean(records.map((record) => mean(record.nis.slice(i + 1 - settings.window, i + 1)))));
-    return (last = { key, records, every, nees, nis });
+    return (last = { key, records, every, ...tracker.judged(records, every, settings.window, mean) });
   }
 
   return {

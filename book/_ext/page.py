@@ -12,7 +12,7 @@ from pathlib import Path
 
 from docutils import nodes
 
-PICTURE = "hero.png"  # in `_static`: the first figure of the book, as its notebook has it
+PICTURE = "hero.png"  # in `_static`: a hundred tracks, as the first page has them
 SCALE = 0.68  # px of a page for one of a figure: seven inches are as wide as the text
 LONGEST = 200  # characters of a description: what a search engine shows
 REPEATED = {"exercise-content", "solution-content"}

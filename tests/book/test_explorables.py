@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,15 +21,18 @@ from dopplerlib import (
     nees,
     ring_family,
 )
+from dopplerlib.chain.collision import collision_probability
 from dopplerlib.signal import laws
 from dopplerlib.systems import asheim2015 as thesis
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.tracking.bilateration import bilaterate
 from dopplerlib.workspace.stop_study import saved_stops
+from dopplerlib.workspace.stopping import RADIUS
 from tools import explorables, notebooks
 
 SCENARIO = paper.reported().scenario
 NAMES = sorted(explorables.SETTINGS)
+FIFTH = np.arange(6) == 4  # the velocity across
 FLAT = [True, True, False, True, True, False]
 # What the two languages may differ by: kernels are the same bits, sums have another order.
 EXACT = {"rtol": 1e-12, "atol": 0}
@@ -200,6 +204,66 @@ def test_the_filter_in_the_page_is_ekf_to_the_last_bit(knobs):
     P = track.P[-1] / np.sqrt(np.outer(*[np.diag(track.P[-1])] * 2))
     truth = np.array(record["truth"])
     assert_allclose(record["nees"], nees(track, truth)[-1], rtol=1e-14 * np.linalg.cond(P))
+
+
+@needs_node
+@pytest.mark.parametrize("knobs", [{}, {"raise": 0, "P0": -1.3, "aside": 0.2, "dx": 0.02}], ids=str)
+def test_the_first_page_computes_what_the_library_does(knobs):
+    program = (
+        f"(() => {{ Object.assign(state, {json.dumps({**knobs, 'k': 199})});"
+        "Object.assign(settings, { samples: 200, runs: 3 });"
+        "const truth = explorable.path(settings, state);"
+        "const sigma = truth.map((_, k) => explorable.deviation(settings, state, k));"
+        "const runs = [0, 1, 2].map((run) => explorable.record(settings, state, truth, run));"
+        "return { truth, sigma, numbers: explorable.measure(settings, state), runs: runs.map("
+        "({ z, estimate, x, nis, P }) => ({ z, estimate, x, nis, P: P(199) })) }; })()"
+    )
+    page = explorables.node("hero", program)
+    truth, numbers, runs = np.array(page["truth"]), page["numbers"], page["runs"]
+    turned = replace(SCENARIO, x0=np.where(FIFTH, truth[0], SCENARIO.x0), samples=200)
+    assert_allclose(truth, turned.truth, **EXACT)
+    entered = -truth[0, 0] / truth[0, 3] * (truth[0, 4] - SCENARIO.x0[4])
+    assert_allclose(entered, knobs.get("aside", 0), atol=1e-15)
+    far = np.linalg.norm(truth[0, :3] + np.linspace(0, 2, 20_001)[:, None] * truth[0, 3:], axis=1)
+    assert_allclose(numbers["closest"], far.min(), rtol=1e-6)  # steps of 0.1 ms
+
+    most = 10 ** knobs.get("raise", 1.5)
+    sigma = SCENARIO.sigma_f * (1 + (most - 1) * np.exp(-np.arange(200) / 30))
+    assert_allclose(page["sigma"], sigma, rtol=1e-14)
+    z, estimate = (np.array([run[name] for run in runs]) for name in ("z", "estimate"))
+    # 3600 errors of measurements: their spread is within 6 % but for a chance of 1e-6.
+    assert_allclose((z - doppler_shift(truth, SCENARIO.array)).std(), SCENARIO.sigma_f, rtol=0.06)
+    before = estimate - SCENARIO.T * np.pad(estimate[:, 3:], ((0, 0), (0, 3)))
+    P0 = 10 ** (2 * knobs.get("P0", -0.5)) * np.eye(6)
+    deviations = SCENARIO.sigma_a, np.array(page["sigma"])[:, None]
+    track = ekf(z, SCENARIO.array, before, P0, SCENARIO.T, *deviations)
+    assert [run["x"] for run in runs] == track.x.tolist()
+    assert [run["nis"] for run in runs] == track.nis.tolist()
+    P = track.P[:, -1]
+    assert [run["P"] for run in runs] == P.tolist()
+
+    error = np.linalg.norm(track.x[:, -1, :3] - truth[-1, :3], axis=-1)
+    assert_allclose(numbers["error"], np.median(error), rtol=1e-12)
+    claimed = np.sqrt(np.trace(P[:, :3, :3], axis1=1, axis2=2))
+    assert_allclose(numbers["claimed"], np.median(claimed), **EXACT)
+    assert_allclose(numbers["nis"], track.nis[:, 100:].mean(), rtol=1e-12)
+    condition = np.linalg.cond(P / np.sqrt(np.einsum("ri,rj->rij", *[np.einsum("rii->ri", P)] * 2)))
+    value = np.median(nees(track, truth)[:, -1])
+    assert_allclose(numbers["nees"], value, rtol=1e-14 * condition.max())
+
+
+@needs_node
+def test_the_first_page_decides_like_the_library():
+    settings = explorables.SETTINGS["hero"]()
+    x = SCENARIO.truth[::100] - [0.0, 0, 0.03, 0, 0, 0]
+    P = np.diag([0.06, 0.05, 0.04, 0.1, 0.08, 0.1]) ** 2 + 0.001
+    chances = explorables.node(
+        "hero", f"{x.tolist()}.map(x => explorable.entering(x, {P.tolist()}, settings))"
+    )
+    points = len(settings["normal"])
+    found = collision_probability(x, P, RADIUS, settings["within"], points=points)
+    assert chances == found.tolist()
+    assert min(chances) < 0.1 < 0.5 < max(chances)
 
 
 @needs_node

@@ -75,3 +75,18 @@ def test_the_plane_scene_answers_with_the_shifts_of_the_library(tab):
     assert shown(tab, root)["x"][1] < first["x"][1] - 0.1  # the target follows all the way
     assert tab.run("scrollY") == before
     assert tab.complaints == []
+
+
+def test_the_first_page_plays_and_shows_a_filter_that_is_too_sure(tab):
+    tab.open("index.html")
+    root = awake(tab, "hero")
+    first = shown(tab, root)
+    assert first["error"] < 2 * first["claimed"]
+    tab.on("#hero-printed", "e.click()")
+    assert shown(tab, root)["error"] > 2 * shown(tab, root)["claimed"]
+    tab.press("End", "#hero-aside")
+    assert shown(tab, root)["stops"] < first["stops"]
+    before = shown(tab, root)["time"]
+    tab.on(f"{root} .play button", "e.click()")
+    tab.wait(f"JSON.parse(document.querySelector('{root}').dataset.numbers).time > {before}")
+    assert tab.complaints == []
