@@ -20,6 +20,7 @@ quiet = np.errstate(all="ignore")
 
 _PLAIN = {float, int, np.ndarray, np.float64}
 _LISTS = {list, tuple}
+_DOUBLE = np.dtype(float)
 _SCALARS = {float, int, bool, np.float64, np.bool_}
 
 
@@ -29,6 +30,8 @@ def real(name, value):
     Text, booleans, None, complex numbers, dates, masks and units are refused, also inside lists:
     NumPy would turn each of them into floats and lose what they meant. An iterator is a list.
     """
+    if type(value) is np.ndarray and value.dtype is _DOUBLE:
+        return value
     return _numbers(name, value, "iuf", "real numbers").astype(float, copy=False)
 
 
@@ -97,12 +100,13 @@ def finite_complex(name, value, shape=None):
 
 def check_shape(name, array, shape):
     """Raise unless the last axes of `array` have `shape`."""
-    if shape is None:
+    if shape is None or array.shape == shape:
         return
-    last = array.shape[array.ndim - len(shape) :] if array.ndim >= len(shape) else None
-    if last is None or any(
-        want is not None and got != want for got, want in zip(last, shape, strict=True)
-    ):
+    leading = array.ndim - len(shape)
+    good = leading >= 0
+    for got, want in zip(array.shape[max(leading, 0) :], shape, strict=False):
+        good = good and (want is None or got == want)
+    if not good:
         wanted = ", ".join("any" if want is None else str(want) for want in shape)
         raise ValueError(f"{name} must have shape (..., {wanted}), got {array.shape}")
 
@@ -252,6 +256,8 @@ def increasing_pair(name, value):
 
 def one_of(name, value, choices):
     """Return `value`, or raise if it is none of `choices`."""
+    if (value is None or type(value) is str) and value in choices:
+        return value
 
     def is_it(choice):
         alike = is_whole(value) if is_whole(choice) else isinstance(value, type(choice))
@@ -266,6 +272,8 @@ def one_of(name, value, choices):
 
 def some_of(name, values, choices):
     """Return `values`, or raise if it is not a collection that holds only some of `choices`."""
+    if values is choices:
+        return choices
     wanted = f"a collection of {', '.join(map(repr, choices))}"
     return tuple(one_of(name, value, choices) for value in iterable(name, values, wanted))
 

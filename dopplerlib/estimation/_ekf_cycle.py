@@ -153,7 +153,10 @@ def factor(P0, at, memory, lane, lanes):
 
 @_inline
 def clear_of_sensors(memory, sensors, lanes, lane, T):
-    """Return whether the next prediction is on no sensor; see `check_clear_of_sensors`."""
+    """Return whether the next prediction is finite and on no sensor, see `check_clear_of_sensors`.
+
+    One that is out of sight may be called not finite, too.
+    """
     s = (SENSORS + sensors * kernel.SENSOR_ROWS) * lanes + 3 + 2 * sensors
     for _ in range(sensors):
         square = 0.0
@@ -161,7 +164,7 @@ def clear_of_sensors(memory, sensors, lanes, lane, T):
             d = memory[i * lanes + lane] + T * memory[(i + 3) * lanes + lane] - memory[s]
             square += d * d
             s += 1
-        if square == 0.0:
+        if not 0.0 < square < np.inf:
             return False
     return True
 

@@ -40,7 +40,10 @@ def compiled(lanes):
         memory, sensors, samples, columns, z, T, noise, variance, x0, P0,
         x, P, innovation, S, nis, updated,
     ):  # fmt: skip
-        """Return whether no run starts with a doubtful P0 or is predicted onto a sensor at once."""
+        """Return whether no measurement is infinite, and no start in doubt.
+
+        That is one with a P0 that may be none, or one that is predicted onto a sensor at once.
+        """
         compiled_in  # noqa: B018  (see fingerprint)
         good = True
         runs = len(nis) // samples
@@ -61,6 +64,7 @@ def compiled(lanes):
                     for lane in range(width):
                         measured = z[((first + lane) * samples + k) * sensors + n]
                         memory[sensor + lane] = measured
+                        good = good and measured != np.inf and measured != -np.inf
                 cycle(
                     memory, sensors, lanes, width, T[step], noise, step * 6 * columns, columns,
                     variance, row, len(S) > 0,

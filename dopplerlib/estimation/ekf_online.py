@@ -11,7 +11,8 @@ from .._records import filled
 from .._typing import ArrayLike
 from ..model.doppler import check_clear_of_sensors
 from ..model.radar_array import RadarArray
-from .extended_kalman import _OPTIONAL, _measurements, _noise_columns, gate_bounds
+from ._ekf_setting import check_not_infinite, noise_columns
+from .extended_kalman import _OPTIONAL, gate_bounds
 from .track import Track
 
 _BLOCK = 2048  # numbers for which memory is taken at once, if a sample has not more
@@ -92,7 +93,7 @@ def ekf_online(
     """
     N = len(_checks.instance("array", array, RadarArray))
     usual = _checks.one_number("T", T, _checks.deviation), _deviations(sigma_f, N).copy()
-    columns = _noise_columns(np.array([usual[0]]), sigma_a, noise)[0]
+    columns = noise_columns(np.array([usual[0]]), sigma_a, noise)[0]
     _checks.one_of("gate", gate, (None, "upper", "two-sided"))
     bounds = gate_bounds(gate, N, gate_probability)
     x0 = _checks.exact_shape("x0", _checks.finite("x0", x0, (6,)), (6,))
@@ -113,7 +114,7 @@ def ekf_online(
         nonlocal last
         found = [a if b is None else b for a, b in zip(usual, (T, sigma_f), strict=True)]
         interval = _checks.one_number("T", found[0], _checks.deviation)
-        columns = _noise_columns(np.array([interval]), sigma_a, noise)
+        columns = noise_columns(np.array([interval]), sigma_a, noise)
         memory.variance[:] = _deviations(found[1], N) ** 2
         memory.noise[: columns.size] = columns.reshape(-1)
         memory.T[0] = interval
@@ -152,7 +153,7 @@ def ekf_online(
         measured[...] = z
         outcome = step(everything, block)
         if outcome == INFINITE:
-            _measurements(z[None], array)  # says which one
+            check_not_infinite(z)  # says which one
         x, P, innovation, S = place
         place = next(places)
         nis, updated = everything[NIS], outcome == UPDATED

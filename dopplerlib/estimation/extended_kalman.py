@@ -4,21 +4,21 @@ import os
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cache, lru_cache
+from functools import cache
 from math import prod
 from typing import Literal
 
 import numpy as np
 
 from .. import _checks
-from .._hints import Index, Probability, between, checked
+from .._hints import Index, Probability, checked
 from .._records import filled
 from .._typing import ArrayLike, FloatArray
 from ..model.doppler import check_clear_of_sensors
 from ..model.links import DopplerLinks, state_size
-from ..model.motion import dwna_gain
 from ..model.radar_array import RadarArray
 from ._ekf_general import filter_general, general_motion
+from ._ekf_setting import bounds, check_not_infinite, flat, records, setting
 from .track import Track
 
 _OPTIONAL = ("P", "innovation", "S")
@@ -134,84 +134,79 @@ def ekf(
     ((16, 100, 6), (16, 100, 6, 6), (16, 100))
     """
     n = state_size(_checks.instance("array", array, (RadarArray, DopplerLinks)))
-    z = _measurements(z, array)
-    T = _intervals(T, z.shape[-2])
-    columns = _noise_columns(T, sigma_a, noise)
-    rows = 1 if type(sigma_f) is float else z.shape[-2]
-    variance = _variance(sigma_f, (rows, len(array)))
-    _checks.one_of("gate", gate, (None, "upper", "two-sided", "soft"))
-    soft = gate == "soft"
-    probability = _checks.probability("gate_probability", gate_probability)
-    lower, upper = _bounds("upper" if soft else gate, len(array), probability)
-    clocks = _clock_noise(n > 6, sigma_clock=sigma_clock, sigma_drift=sigma_drift)
-    x0 = _checks.finite("x0", x0, (n,))
-    general = soft or isinstance(array, DopplerLinks)
-    # The compiled loop factors P0 anyway, and says if a longer look is needed.
-    whole = general or z.ndim > 2
-    P0 = _covariance(P0, n) if whole else _checks.real("P0", P0)
+    z = records(z, array)
+    batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
+    values = T, sigma_a, sigma_f, noise, gate, gate_probability, sigma_clock, sigma_drift
+    given = setting(array, samples, *values)
+    x0, P0 = _checks.real("x0", x0), _checks.real("P0", P0)
+    _checks.check_shape("x0", x0, (n,))
     _checks.check_shape("P0", P0, (n, n))
+    general = gate == "soft" or isinstance(array, DopplerLinks)
+    if general or batch:  # runs may share a start, which the compiled loop would see in each
+        _check_start(x0, P0, n)
     keep = _checks.some_of("keep", keep, _OPTIONAL)
     if workers is not None:
         workers = _checks.whole_number("workers", workers)
 
-    batch, (samples, sensors) = z.shape[:-2], z.shape[-2:]
-    runs = prod(batch)
     x0 = _checks.each_run("x0", x0, batch, (n,))
     P0 = _checks.each_run("P0", P0, batch, (n, n))
     if general:
-        variance = np.broadcast_to(variance, z.shape[-2:])
-        array, motion = general_motion(array, T, samples, sigma_a, noise, *clocks)
-        bounds = (lower, upper, soft) if gate else None
-        track = filter_general(z, array, x0, P0, motion, variance, bounds)
+        check_not_infinite(z)
+        variance = np.broadcast_to(given.variance, (samples, sensors))
+        array, motion = general_motion(array, given.T, samples, sigma_a, noise, *given.clocks)
+        limits = (given.lower, given.upper, gate == "soft") if gate else None
+        track = filter_general(z, array, x0, P0, motion, variance, limits)
         return replace(track, **{name: None for name in _OPTIONAL if name not in keep})
-    # Whether an array may be written to is part of its type: numba would compile the loop again
-    # for every mixture, 2 s each.
-    inputs = [np.ascontiguousarray(v).reshape(-1) for v in (z, variance, T, columns, x0, P0)]
-    for value in inputs:
-        value.setflags(write=False)
-    shapes = {
-        "x": (6,), "P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors), "nis": (),
-    }  # fmt: skip
-    out = {
-        name: np.empty((*batch, samples, *shape)) if name in keep or name not in _OPTIONAL else None
-        for name, shape in shapes.items()
-    }
-    out["updated"] = np.empty((*batch, samples), bool)
+    lead = *batch, samples
+    out = dict.fromkeys(("x", *_OPTIONAL))
+    shapes = {"P": (6, 6), "innovation": (sensors,), "S": (sensors, sensors)}
+    out["x"], out["nis"] = np.empty((*lead, 6)), np.empty(lead)
+    out["updated"] = np.empty(lead, bool)
+    for name in keep:
+        out[name] = np.empty((*lead, *shapes[name]))
     results = [_NOTHING if value is None else value.reshape(-1) for value in out.values()]
-
-    LANES, compiled, new_memory = _loop()
-    lanes = LANES if runs >= LANES else 1
-    sizes = sensors, samples, columns.shape[-2]
-
-    def run(z, variance, T, columns, x0, P0, *results):
-        memory = new_memory(lanes, array.positions, array.doppler_per_speed, lower, upper)
-        return compiled(lanes)(memory, *sizes, z, T, columns, variance, x0, P0, *results)
-
-    def part(first, last):
-        def own(values):
-            return values[first * (len(values) // runs) : last * (len(values) // runs)]
-
-        z, variance, T, columns, x0, P0 = inputs
-        return run(own(z), variance, T, columns, own(x0), own(P0), *map(own, results))
-
-    if runs <= lanes:
-        good = run(*inputs, *results)
-    else:
-        workers = workers or os.cpu_count() or 1
-        with ThreadPoolExecutor(workers) as pool:
-            # A list: `all` stops at the first False, and what has not begun by then never would.
-            good = all([*pool.map(part, *_parts(runs, lanes, workers))])
-    if not good:
-        _covariance(P0, n)
-        check_clear_of_sensors("F x0", x0[..., :3] + T[0] * x0[..., 3:], array)
+    if not _filtered(prod(batch), array, given, (z, x0, P0), results, workers):
+        check_not_infinite(z)
+        _check_start(x0, P0, n)
+        check_clear_of_sensors("F x0", x0[..., :3] + given.T[0] * x0[..., 3:], array)
     for value in out.values():
         if value is not None:
             value.setflags(False)
     return filled(Track, out)
 
 
-def _covariance(P0, n):
-    return _checks.covariance("P0", P0, n, definite=False)
+def _check_start(x0, P0, n):
+    _checks.finite("x0", x0)
+    _checks.covariance("P0", P0, n, definite=False)
+
+
+def _filtered(runs, array, given, inputs, results, workers):
+    """Write the results of the compiled loop; return whether no input needs a longer look."""
+    LANES, compiled, new_memory = _loop()
+    lanes = LANES if runs >= LANES else 1
+    sizes = *inputs[0].shape[:-3:-1], given.columns.shape[-2]
+    z, x0, P0 = map(flat, inputs)
+
+    def run(z, x0, P0, *results):
+        memory = given.memories.get(lanes)
+        if memory is None:
+            setup = array.positions, array.doppler_per_speed, given.lower, given.upper
+            memory = given.memories[lanes] = new_memory(lanes, *setup)
+        return compiled(lanes)(memory.copy(), *sizes, z, *given.inputs, x0, P0, *results)
+
+    if runs <= lanes:
+        return run(z, x0, P0, *results)
+
+    def part(first, last):
+        def own(values):
+            return values[first * (len(values) // runs) : last * (len(values) // runs)]
+
+        return run(*map(own, (z, x0, P0, *results)))
+
+    workers = workers or os.cpu_count() or 1
+    with ThreadPoolExecutor(workers) as pool:
+        # A list: `all` stops at the first False, and what has not begun by then never would.
+        return all([*pool.map(part, *_parts(runs, lanes, workers))])
 
 
 @cache
@@ -253,85 +248,8 @@ def gate_bounds(
     >>> round(float(lower[6]), 3), round(float(upper[6]), 3)
     (1.237, 14.449)
     """
-    lower, upper = _bounds(gate, sensors, gate_probability)
+    lower, upper = bounds(gate, sensors, gate_probability)
     return lower.copy(), upper.copy()
-
-
-@lru_cache
-def _bounds(gate, sensors, gate_probability):
-    if sensors > 10**6:  # 8 MB
-        raise ValueError(f"sensors must be at most a million, got {sensors}")
-    lower = np.full(sensors + 1, -np.inf)
-    upper = np.full(sensors + 1, np.inf)
-    if gate is not None:
-        from scipy.special import chdtri  # upper-tail quantile of chi-square
-
-        dof = np.arange(1, sensors + 1)
-        tail = (1 - gate_probability) / (1 if gate == "upper" else 2)
-        upper[1:] = chdtri(dof, tail)
-        if gate == "two-sided":
-            lower[1:] = chdtri(dof, 1 - tail)
-    return lower, upper
-
-
-def _measurements(z, array):
-    z = _checks.real("z", z)
-    _checks.check_shape("z", z, (None, len(array)))
-    if not z.size:
-        raise ValueError(f"z must hold at least one run and one sample, got shape {z.shape}")
-    if not _checks.all_finite(z) and np.isinf(z).any():
-        place = tuple(int(i) for i in np.argwhere(np.isinf(z))[0])
-        raise ValueError(
-            f"z must be finite, or NaN where a sensor is missing, got {z[place]} at index {place}"
-        )
-    return z
-
-
-def _clock_noise(there, **sigmas):
-    """Return the process noise of the clocks; without any it has to be zero."""
-    if all(type(value) is float and value == 0 for value in sigmas.values()):
-        return list(sigmas.values())
-    return [between(0, 1e60 if there else 0)(name, value) for name, value in sigmas.items()]
-
-
-def _noise_columns(T, sigma_a, noise):
-    """Return the columns of sigma_a G, (K or 1, C, 6), for the noise of each interval."""
-    if len(T) == 1 and type(sigma_a) is float and isinstance(noise, str):
-        return _columns_of_one(float(T[0]), sigma_a, noise)
-    G, sigma_a = dwna_gain(T, sigma_a, noise)
-    return np.ascontiguousarray(sigma_a * np.swapaxes(G, -1, -2))
-
-
-@lru_cache
-def _columns_of_one(T, sigma_a, noise):
-    G, sigma_a = dwna_gain(np.array([T]), sigma_a, noise)
-    columns = np.ascontiguousarray(sigma_a * np.swapaxes(G, -1, -2))
-    columns.setflags(write=False)
-    return columns
-
-
-def _intervals(T, samples):
-    """Return the intervals before the samples, (samples,), or (1,) if all are the same."""
-    if type(T) is float:  # a shorter way to the same
-        return np.array([_checks.one_number("T", T, _checks.deviation)])
-    T = _checks.deviation("T", T)
-    if T.shape not in ((), (samples,)):
-        raise ValueError(
-            f"T must be one number or have shape (K,) = ({samples},), got shape {T.shape}"
-        )
-    return T.reshape(-1).copy()
-
-
-def _variance(sigma_f, shape):
-    if type(sigma_f) is float:  # a shorter way to the same
-        return np.full(shape, _checks.one_number("sigma_f", sigma_f, _checks.deviation) ** 2)
-    sigma_f = _checks.deviation("sigma_f", sigma_f)
-    try:
-        return np.ascontiguousarray(np.broadcast_to(sigma_f**2, shape))
-    except ValueError:
-        raise ValueError(
-            f"sigma_f must broadcast to (K, N) = {shape}, got shape {sigma_f.shape}"
-        ) from None
 
 
 def _parts(runs, lanes, workers):

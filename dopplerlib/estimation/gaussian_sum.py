@@ -12,9 +12,9 @@ from .._hints import Count, Positive, Probability, checked, up_to
 from .._records import record
 from .._typing import ArrayLike
 from ..model.radar_array import RadarArray
+from ._ekf_setting import measurements, variances
 from ._gaussian_sum_average import average
 from ._gaussian_sum_setting import Estimates, blank, new_bank, prepare, to_caller
-from .extended_kalman import _measurements, _variance
 
 _Members = Annotated[int, up_to(1000, least=0)]
 
@@ -163,8 +163,8 @@ def gaussian_sum(
     >>> bool(np.abs(found.x[-1, :3] - path[-1, :3]).max() < 0.005)
     True
     """
-    z = _measurements(z, array)
-    weights = 1 / _variance(sigma_f, z.shape[-2:])
+    z = measurements(z, array)
+    weights = 1 / variances(sigma_f, z.shape[-2:])
     batch, (K, N) = z.shape[:-2], z.shape[-2:]
     rest = noise, block, lightest, loss, gate_probability
     prepared = [prepare(array, x0, P0, T, s, *rest) for s in _guesses(sigma_a)]
@@ -252,7 +252,7 @@ def gaussian_sum_online(
     >>> found.x.shape, int(found.members) > 10
     ((6,), True)
     """
-    weights = 1 / _variance(sigma_f, (1, len(array)))
+    weights = 1 / variances(sigma_f, (1, len(array)))
     weights.flags.writeable = False
     rest = noise, block, lightest, loss, gate_probability
     prepared = [prepare(array, x0, P0, T, s, *rest) for s in _guesses(sigma_a)]
@@ -263,7 +263,7 @@ def gaussian_sum_online(
         """Take the next sample (N,) in Hz and return the estimate after it."""
         from ._gaussian_sum_loop import track
 
-        sample = _measurements(np.asarray(z)[None], array)
+        sample = measurements(np.asarray(z)[None], array)
         sample.flags.writeable = False
         found = [blank(1, mixture=mixture) for _ in banks]
         for (_, setting), bank, out in zip(prepared, banks, found, strict=True):

@@ -13,9 +13,9 @@ from .._typing import ArrayLike
 from ..kernels import ring_coordinates as kernel
 from ..model.motion import constant_velocity, ncv_transition
 from ..model.radar_array import RadarArray
+from ._ekf_setting import measurements, variances
 from ._gaussian_sum_setting import _frame
 from ._student_mixture import StudentMixture, efficiency, normalized
-from .extended_kalman import _measurements, _variance
 from .gaussian_sum import gaussian_sum
 
 _BACKWARD = np.array([1.0, 1, 1, -1, -1, -1])  # of a state: that in reversed time
@@ -131,9 +131,9 @@ def importance_posterior(
     >>> bool(found.P[0, 0] ** 0.5 > 0.1)
     True
     """
-    z = _measurements(z, array)
+    z = measurements(z, array)
     batch, (K, N) = z.shape[:-2], z.shape[-2:]
-    variance = _variance(sigma_f, (K, N))
+    variance = variances(sigma_f, (K, N))
     x0 = _checks.exact_shape("x0", _checks.moderate("x0", x0, (6,)), (6,))
     P0 = _checks.exact_shape("P0", _checks.covariance("P0", P0, 6), (6, 6))
     steady = _checks.one_number("sigma_a", sigma_a) == 0

@@ -12,10 +12,10 @@ from .._typing import ArrayLike
 from ..model.information import inverse_information
 from ..model.links import DopplerLinks, sample_times, state_size
 from ..model.radar_array import RadarArray
+from ._ekf_setting import measurements
 from ._ml_fit import Options, fit_run
 from ._ml_links import links_problem
 from ._ml_problem import Found, array_problem
-from .extended_kalman import _measurements
 from .initial_estimate import InitialEstimate
 from .whitening import whitening_matrices
 
@@ -142,7 +142,7 @@ def ml_initialize(
     >>> (ml_initialize(z, array, 0.1, 0.001, box).x.round(6) + 0.0).tolist()
     [0.5, 0.2, 0.0, -1.0, 0.5, 0.0]
     """
-    z = _measurements(z, array)
+    z = measurements(z, array)
     samples, sensors = z.shape[-2:]
     times = sample_times(array, samples, T)
     times = times - times[0]

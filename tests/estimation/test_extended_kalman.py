@@ -145,6 +145,27 @@ def test_leading_axes_are_batch_axes(batch):
     assert_same_bits(track, flat)
 
 
+def test_one_deviation_is_the_same_for_each_sensor_and_sample():
+    z = records(1, 20, seed=8)[0]
+    sigma_f = 0.8329  # its square by `pow` and by multiplication differ in the last bit
+    one = filtered(z, sigma_f=sigma_f)
+    for shape in ((6,), (20, 6)):
+        assert_same_bits(one, filtered(z, sigma_f=np.full(shape, sigma_f)))
+
+
+def test_settings_of_the_call_before_do_not_stay():
+    z, other = records(1, 20, seed=9)[0], RadarArray(RING.positions, 0.0124)
+    settings = [{"T": 2e-3}, {"sigma_f": 0.3}, {"noise": "shared"}, {"gate": "upper"},
+                {"gate": "upper", "gate_probability": 0.5}, {"array": other}]  # fmt: skip
+    before = filtered(z)
+    for changed in settings:
+        found = filtered(z, **changed)
+        each = changed | {"T": np.full(20, changed.get("T", T))}  # a way without a memory
+        assert_same_bits(found, filtered(z, **each))
+        assert found.nis.tobytes() != before.nis.tobytes() or not found.updated.all()
+    assert_same_bits(before, filtered(z))
+
+
 def test_starts_broadcast_against_the_runs():
     z = records((2, 3), 20, seed=7)
     x0 = START + 0.01 * np.arange(3)[:, None]
