@@ -1,200 +1,226 @@
-"""Time of one EKF step, as ratios against other libraries, after they were shown to agree.
+"""The filter beside its peers: one run and a thousand, after all of them were shown to agree.
 
-``make bench`` prints Markdown to standard output and progress to standard error. Rounds are
-interleaved: every round times every filter once, and a ratio is taken inside its round, so that
-a machine which is slower for a while slows both sides of it.
+``make bench NAME=ekf`` writes ``measured/ekf.json``, which the book shows: three minutes. All run
+in this process, on one thread, with the same measurements, start, F, Q and R.
 """
 
 import os
-import platform
 import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import replace
-from importlib.metadata import version
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import peers
-from measuring import ROUNDS, interleaved, load, progress, spread
+import peers_c
+import peers_jax
+from measuring import ROUNDS, interleaved, processor_time, progress, save
 
 from dopplerlib import Scenario, constant_velocity, ekf, simulate
+from dopplerlib.model.motion import dwna_gain
 
 SCENARIO = Path(__file__).parents[1] / "data" / "mittermaier2016" / "scenario.toml"
-RUNS = 1_000
-MANY_RUNS = 10_000
+RUNS = 1008  # a multiple of the lanes in C
+FEW = 2  # runs of those that filter one after the other; their time is multiplied
 AGREEMENT = 1e-8
-EVERYTHING = ("P", "innovation", "S")
+EVERYTHING = "P", "innovation", "S"
+INEXACT = "Stone Soup, numerical"
+PACKAGES = "numpy numba sympy filterpy stonesoup dynamax cuthbert jax jaxlib".split()
 
 FIRST_CALLS = """
 import sys, time
-start = time.perf_counter()
-from dopplerlib import Scenario, ekf, simulate
 import numpy as np
+from dopplerlib import Scenario, ekf, simulate
 s = Scenario.from_toml(sys.argv[1])
 z = simulate(s, 16, rng=np.random.default_rng(1))[1]
-ekf(z[0], s.array, s.x0, s.P0, s.T, s.sigma_a, s.sigma_f)
-ekf(z, s.array, s.x0, s.P0, s.T, s.sigma_a, s.sigma_f)
-print(time.perf_counter() - start)
+for records in (z[0], z):
+    start = time.process_time()
+    ekf(records, s.array, s.x0, s.P0, s.T, s.sigma_a, s.sigma_f)
+    print(time.process_time() - start)
 """
 
 
 def main():
-    print(f"{machine()}\n")
-    progress("first calls in a fresh process")
-    print(first_calls(), "\n")
-
+    """Measure, and write what was measured."""
     scenario = Scenario.from_toml(SCENARIO)
     rng = np.random.default_rng(2016)
     # A start as the maximum likelihood gives it: P0 itself would put some targets behind the ring.
     x0 = scenario.x0 + rng.multivariate_normal(np.zeros(6), scenario.P0 / 100)
-    ours, others = filters(scenario, x0)
-    _, z = simulate(scenario, RUNS, rng=rng)
-    compare(z[0], ours(z[0]), others)
-    one_run(z[0], ours, others)
-    many_runs(z, ours, others)
-    progress(f"{MANY_RUNS} runs")
-    ten_thousand(scenario, ours, rng)
+    z = np.ascontiguousarray(simulate(scenario, RUNS, rng=rng)[1])
+    track = ours(scenario, x0, ("P",))(z)
+    expected = {"x": track.x, "P": track.P, "NIS": track.nis}
+    first = {name: values[0] for name, values in expected.items()}
+    found = {
+        "samples": z.shape[1],
+        "runs": RUNS,
+        "agreement": AGREEMENT,
+        "first calls": first_calls(),
+        "one run": measured("one run", one_run(scenario, x0), z[0], first, ROUNDS),
+        "many runs": measured("many runs", many_runs(scenario, x0), z, expected, min(ROUNDS, 5)),
+    }
+    for runs in found["first calls"]["cached"]:
+        for name, row in found[runs].items():
+            if name.startswith("dopplerlib"):  # here compiled, or loaded, before
+                row["start"] = found["first calls"]["nothing cached"][runs]
+    found["gcc"] = peers_c.gcc_version()
+    save("ekf", found, PACKAGES)
 
-    # The same second, sampled ten times as often: what a call costs once no longer counts.
-    longer = replace(scenario, T=scenario.T / 10, samples=10 * scenario.samples)
-    ours, others = filters(longer, x0)
-    del others["Stone Soup, its numerical Jacobian"]
-    z = simulate(longer, 1, rng=rng)[1][0]
-    compare(z, ours(z), others)
-    one_run(z, ours, others)
-    print(f"Load of the machine (1, 5, 15 minutes) at the end: {load()}.")
+
+def ours(s, x0, kept):
+    """Return dopplerlib's filter."""
+    setting = s.array, x0, s.P0, s.T, s.sigma_a, s.sigma_f
+    return lambda z: ekf(z, *setting, keep=kept, workers=1)
 
 
-def filters(scenario, x0):
-    """Return dopplerlib's filter and {name: filter} of the others, all with the same settings."""
+def one_run(scenario, x0):
+    """Return {name: (maker of a filter of one record, its repetitions in a round)}."""
+    c = peers_c.Filters(scenario, x0, 1)
+    return {
+        "dopplerlib, x and NIS": (partial(ours, scenario, x0, ()), 20),
+        "dopplerlib, x and P": (partial(ours, scenario, x0, ("P",)), 20),
+        "dopplerlib, everything": (partial(ours, scenario, x0, EVERYTHING), 20),
+        **{name: (lambda name=name: first_record(c.in_c(name)), 20) for name in peers_c.OPTIONS},
+        **{name: (maker, 3) for name, maker in on_jax(scenario, x0).items()},
+        **{name: (maker, 1) for name, maker in in_python(scenario, x0).items()},
+    }
 
-    def ours(z, **options):
-        return ekf(
-            z, scenario.array, x0, scenario.P0, scenario.T, scenario.sigma_a, scenario.sigma_f,
-            **options,
-        )  # fmt: skip
 
+def many_runs(scenario, x0):
+    """Return the same for many records."""
+    c = peers_c.Filters(scenario, x0, peers_c.LANES)
+    return {
+        "dopplerlib, x and NIS": (partial(ours, scenario, x0, ()), 1),
+        "dopplerlib, x and P": (partial(ours, scenario, x0, ("P",)), 1),
+        "dopplerlib, everything": (partial(ours, scenario, x0, EVERYTHING), 1),
+        **{name: (partial(c.in_c, name), 1) for name in peers_c.OPTIONS},
+        **{name: (maker, 1) for name, maker in on_jax(scenario, x0).items()},
+        "NumPy, all at once": (lambda: peers.stacked(*arguments(scenario, x0)), 1),
+        **{
+            name: (partial(one_by_one, maker), 1) for name, maker in in_python(scenario, x0).items()
+        },
+    }
+
+
+def in_python(scenario, x0):
+    """Return {name: maker of a filter of one record} of those that Python steps through."""
+    given = arguments(scenario, x0)
+    return {
+        "NumPy": lambda: peers.textbook(*given),
+        "NumPy, lambdify": lambda: peers.lambdified(*given),
+        "FilterPy": lambda: peers.filterpy(*given),
+        "Stone Soup": lambda: peers.stonesoup(*given, scenario.T),
+        INEXACT: lambda: peers.stonesoup_numerical(*given, scenario.T),
+    }
+
+
+def on_jax(scenario, x0):
+    """Return {name: maker of a filter of one record or many} of the libraries on JAX."""
+    array, x0, P0, F, Q, R = arguments(scenario, x0)
+    G, sigma = dwna_gain(np.array([scenario.T]), scenario.sigma_a, "shared")
+    return {
+        "dynamax": lambda: peers_jax.dynamax(array, x0, P0, F, Q, R),
+        "cuthbert": lambda: peers_jax.cuthbert(array, x0, P0, F, sigma * G[0], R),
+    }
+
+
+def arguments(scenario, x0):
+    """Return array, start, F, Q and R: what a filter of the others is made of."""
     F, Q = constant_velocity(scenario.T, scenario.sigma_a)
     R = scenario.sigma_f**2 * np.eye(len(scenario.array))
-    arguments = scenario.array, x0, scenario.P0, F, Q, R
-    return ours, {
-        "NumPy, as in a textbook": peers.textbook(*arguments),
-        "FilterPy": peers.filterpy(*arguments),
-        "Stone Soup": peers.stonesoup(*arguments, scenario.T),
-        "Stone Soup, its numerical Jacobian": peers.stonesoup_numerical(*arguments, scenario.T),
-    }
+    return scenario.array, x0, scenario.P0, F, Q, R
 
 
-def compare(z, track, others):
-    """Print the largest differences from `track`; stop if an exact filter does not agree."""
-    print(f"Largest difference from dopplerlib over {len(z)} samples:\n")
-    print("| | state (m, m/s) | covariance |\n|---|---|---|")
-    for name, run in others.items():
-        progress(f"agreement of {name}")
-        x, P = run(prepared(run, z))
-        difference = np.abs(x - track.x).max(), np.abs(P - track.P).max()
-        print("| {} | {:.0e} | {:.0e} |".format(name, *difference))
-        if "numerical" not in name and not max(difference) < AGREEMENT:
-            sys.exit(f"{name} differs by {max(difference):.1e}, more than {AGREEMENT:.0e}")
-    print()
+def first_record(many):
+    """Return the filter of one record, of one that takes many."""
+    return lambda z: [values[0] for values in many(z[None])]
 
 
-def one_run(z, ours, others):
-    """Print the time of a step for one run, and the ratios."""
-    kept = {"x and NIS": (), "everything": EVERYTHING}
-    clocks = {
-        f"dopplerlib, {what}": (lambda keep=keep: ours(z, keep=keep, workers=1), 50)
-        for what, keep in kept.items()
-    }
-    for name, run in others.items():
-        data = prepared(run, z)
-        clocks[name] = (lambda run=run, data=data: run(data), 1)
-    # One thread each: processor time is wall time without the waiting for other programs.
-    times = interleaved("one run", clocks, time.process_time)
-    print(
-        f"One run of {len(z)} steps; median (least to most) of {ROUNDS} rounds, processor time:\n"
-    )
-    print("| | µs a step | ÷ dopplerlib, x and NIS | ÷ dopplerlib, everything |")
-    print("|---|---|---|---|")
-    for name, seconds in times.items():
-        ratios = [spread(seconds / times[f"dopplerlib, {what}"]) for what in kept]
-        print(f"| {name} | {spread(seconds / len(z) * 1e6)} | {' | '.join(ratios)} |")
-    print()
+def one_by_one(maker):
+    """Return the filter of a few records, one after the other, of one that takes one."""
+    one = maker()
 
+    def run(records):
+        return [np.stack(values) for values in zip(*map(one, records), strict=True)]
 
-def many_runs(z, ours, others):
-    """Print the time of many runs together, and the ratios to the others' one by one."""
-    settings = {
-        f"{what}, {workers} worker{'s' * (workers > 1)}": {"keep": keep, "workers": workers}
-        for what, keep in {"x and NIS": (), "everything": EVERYTHING}.items()
-        for workers in (1, 2)
-    }
-    clocks = {
-        name: (lambda options=options: ours(z, **options), 1) for name, options in settings.items()
-    }
-    counts = dict.fromkeys(others, 2) | {"Stone Soup, its numerical Jacobian": 1}
-    for name, run in others.items():
-        data = [prepared(run, record) for record in z[: counts[name]]]
-        clocks[name] = (lambda run=run, data=data: [run(record) for record in data], 1)
-    times = interleaved(f"{len(z)} runs", clocks)
-    for name, count in counts.items():
-        times[name] *= len(z) / count
-    print(f"{len(z)} runs of {z.shape[1]} steps; dopplerlib filters them together, the others are")
-    print("timed on one or two runs, one after the other, and the time is multiplied:\n")
-    print("| | s | ns a step and run |\n|---|---|---|")
-    for name in settings:
-        per_step = times[name] / len(z) / z.shape[1] * 1e9
-        print(f"| dopplerlib, {name} | {spread(times[name])} | {spread(per_step)} |")
-    print(f"\n| | s | {' | '.join(f'÷ {name}' for name in settings)} |")
-    print("|---|---|" + "---|" * len(settings))
-    for name in others:
-        ratios = " | ".join(spread(times[name] / times[setting]) for setting in settings)
-        print(f"| {name} | {spread(times[name])} | {ratios} |")
-    print()
-
-
-def ten_thousand(scenario, ours, rng):
-    """Print the wall time of ten thousand runs, once for each number of workers."""
-    _, z = simulate(scenario, MANY_RUNS, rng=rng)
-    for workers in (1, 2):
-        start = time.perf_counter()
-        ours(z, keep=(), workers=workers)
-        seconds = time.perf_counter() - start
-        print(f"{MANY_RUNS} runs, x and NIS, workers={workers}: {seconds:.2f} s.", end=" ")
-    print("\n")
-
-
-def first_calls():
-    """Return a line on what a fresh process pays before its first result."""
-    with tempfile.TemporaryDirectory() as cache:
-        environment = os.environ | {"NUMBA_CACHE_DIR": cache}
-        command = [sys.executable, "-c", FIRST_CALLS, str(SCENARIO)]
-        cold, cached = (
-            float(subprocess.run(command, env=environment, check=True, capture_output=True).stdout)
-            for _ in range(2)
-        )
-    return (
-        "Import and first calls in a fresh process (one run and 16 runs, two compilations; not in "
-        f"the times below): {cold:.1f} s with nothing cached, {cached:.1f} s with numba's cache."
-    )
-
-
-def machine():
-    """Return a line on what the times were taken with."""
-    packages = ("numpy", "numba", "filterpy", "stonesoup")
-    versions = ", ".join(f"{name} {version(name)}" for name in packages)
-    return (
-        f"Python {platform.python_version()}, {versions}; {platform.machine()}, "
-        f"{os.cpu_count()} processors, OMP_NUM_THREADS={os.environ.get('OMP_NUM_THREADS')}, "
-        f"load at the start {load()}."
-    )
+    run.prepare = lambda z: [prepared(one, record) for record in z[:FEW]]
+    return run
 
 
 def prepared(run, z):
     """Return `z` in the form that the filter `run` wants."""
     return run.prepare(z) if hasattr(run, "prepare") else z
+
+
+def measured(title, makers, z, expected, rounds):
+    """Return {name: start, difference, compared, beyond, seconds} of the filters.
+
+    The start is what the first call costs beside a later one, making and compiling with it, in s;
+    the others are s a step and run, one for each round. All is processor time.
+
+    Stop before anything is timed if one does not agree with what is expected in most runs.
+    """
+    clocks, rows, steps = {}, {}, {}
+    for name, (maker, repetitions) in makers.items():
+        progress(f"{title}: agreement of {name}")
+        begun = processor_time()
+        run = maker()
+        data = prepared(run, z)
+        found = run(data)
+        first = processor_time() - begun
+        if hasattr(found, "nis"):
+            found = found.x, (found.nis if found.P is None else found.P)
+        rows[name] = {"start": first} | compared(name, found, expected)
+        steps[name] = found[0].size // 6
+        clocks[name] = (lambda run=run, data=data: run(data)), repetitions
+    # One thread each: processor time is wall time without the waiting for other programs.
+    times = interleaved(title, clocks, time.process_time, rounds)
+    for name, seconds in times.items():
+        rows[name]["start"] = max(rows[name]["start"] - np.median(seconds), 0.0)
+        rows[name]["seconds"] = seconds / steps[name]
+    return rows
+
+
+def compared(name, found, expected):
+    """Return the largest differences of a filter, and in how many runs they are large.
+
+    Rounding grows in a few runs, with some updates. These are counted, and the median run has to
+    agree.
+    """
+    found = dict(zip(("x", "P" if found[1].ndim > found[0].ndim else "NIS"), found, strict=True))
+    runs = found["x"].size // expected["x"].shape[-2] // 6
+    difference = {
+        kept: np.abs(values - expected[kept][tuple(map(slice, values.shape))])
+        .reshape(runs, -1)
+        .max(-1)
+        for kept, values in found.items()
+    }
+    largest = np.maximum(difference["x"], difference.get("P", 0.0))
+    if name != INEXACT and not np.median(largest) < AGREEMENT:
+        sys.exit(f"{name} differs by {np.median(largest):.1e}, more than {AGREEMENT:.0e}")
+    return {
+        "difference": {kept: values.max() for kept, values in difference.items()},
+        "compared": runs,
+        "beyond": np.count_nonzero(largest >= AGREEMENT),
+    }
+
+
+def first_calls():
+    """Return the times in s of the first calls in a fresh process: of one record, and of many."""
+    with tempfile.TemporaryDirectory() as cache:
+        environment = os.environ | {"NUMBA_CACHE_DIR": cache}
+        command = [sys.executable, "-c", FIRST_CALLS, str(SCENARIO)]
+        found = {}
+        for state in ("nothing cached", "cached"):
+            progress(f"first calls in a fresh process, {state}")
+            output = subprocess.run(
+                command, env=environment, check=True, capture_output=True, text=True
+            ).stdout
+            found[state] = dict(
+                zip(("one run", "many runs"), map(float, output.split()), strict=True)
+            )
+    return found
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ these files and nothing else. ROUNDS=3 in the environment makes fewer rounds.
 import json
 import os
 import platform
+import resource
 import sys
 import time
 from datetime import UTC, datetime
@@ -43,6 +44,13 @@ def interleaved(title, clocks, clock=time.perf_counter, rounds=ROUNDS):
             if k >= 0:
                 times[name][k] = (clock() - start) / repetitions
     return times
+
+
+def processor_time():
+    """Return the processor time in s of this process, and of the others that it has waited for."""
+    kinds = resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN
+    used = [resource.getrusage(kind) for kind in kinds]
+    return sum(one.ru_utime + one.ru_stime for one in used)
 
 
 def save(name, found, packages=("numpy", "numba")):

@@ -2,13 +2,14 @@
 
 Each maker prepares whatever can be prepared outside the timed part and returns a function that
 filters one record z (K, N) and returns x (K, 6) and P (K, 6, 6). Every cycle predicts, then
-updates. All of them get the Doppler shift and its Jacobian below, hand-vectorized, not those of
-`dopplerlib`.
+updates. All but `lambdified` get the Doppler shift and its Jacobian below, hand-vectorized, not
+those of `dopplerlib`.
 """
 
 from datetime import datetime, timedelta
 
 import numpy as np
+import sympy as sp
 from filterpy.kalman import ExtendedKalmanFilter
 from stonesoup.base import Property
 from stonesoup.models.measurement.nonlinear import NonLinearGaussianMeasurement
@@ -19,6 +20,8 @@ from stonesoup.types.detection import Detection
 from stonesoup.types.hypothesis import SingleHypothesis
 from stonesoup.types.state import GaussianState
 from stonesoup.updater.kalman import ExtendedKalmanUpdater
+
+from dopplerlib.derive import doppler
 
 _ONES = np.ones(3)
 
@@ -40,9 +43,20 @@ def jacobian(x, positions, doppler_per_speed):
     return H
 
 
-def textbook(array, x0, P0, F, Q, R, covariance=lambda P, K, H, S, R: P - K @ H @ P):
+def shift_and_jacobian(x, sensors):
+    """Return both."""
+    return shift(x, *sensors), jacobian(x, *sensors)
+
+
+def less_k_h_p(P, K, H, S, R):
+    """Return the updated covariance as Table 1 of the paper has it."""
+    return P - K @ H @ P
+
+
+def textbook(array, x0, P0, F, Q, R, covariance=less_k_h_p, model=shift_and_jacobian, sensors=None):
     """Return Table 1 of the paper line by line in NumPy, as a student writes it."""
-    sensors = array.positions, array.doppler_per_speed
+    if sensors is None:
+        sensors = array.positions, array.doppler_per_speed
 
     def run(z):
         x, P = x0, P0
@@ -50,12 +64,54 @@ def textbook(array, x0, P0, F, Q, R, covariance=lambda P, K, H, S, R: P - K @ H 
         for k, measured in enumerate(z):
             x = F @ x
             P = F @ P @ F.T + Q
-            H = jacobian(x, *sensors)
+            h, H = model(x, sensors)
             S = H @ P @ H.T + R
             K = P @ H.T @ np.linalg.inv(S)
-            x = x + K @ (measured - shift(x, *sensors))
+            x = x + K @ (measured - h)
             P = covariance(P, K, H, S, R)
             xs[k], Ps[k] = x, P
+        return xs, Ps
+
+    return run
+
+
+def lambdified(array, x0, P0, F, Q, R):
+    """Return the same with h and H that SymPy's `lambdify` makes of the library's formulas."""
+    symbols = [doppler.STATE, doppler.SENSOR, doppler.WAVELENGTH]
+    formulas = [doppler.doppler_shift(), *doppler.doppler_gradient()]
+    function = sp.lambdify(symbols, formulas, "numpy", cse=True)
+
+    def model(x, sensors):
+        h, *columns = function(x, *sensors)
+        return h, np.stack(columns, axis=-1)
+
+    sensors = array.positions.T, 2 / array.doppler_per_speed
+    return textbook(array, x0, P0, F, Q, R, model=model, sensors=sensors)
+
+
+def stacked(array, x0, P0, F, Q, R):
+    """Return a filter of many records (R, K, N) at once: each line of Table 1 for all of them."""
+    positions, doppler_per_speed = array.positions, array.doppler_per_speed
+
+    def run(z):
+        runs, K, N = z.shape
+        x, P = np.tile(x0[:, None], (runs, 1, 1)), np.tile(P0, (runs, 1, 1))
+        xs, Ps = np.empty((runs, K, 6)), np.empty((runs, K, 6, 6))
+        H = np.empty((runs, N, 6))
+        for k in range(K):
+            x = F @ x
+            P = F @ P @ F.T + Q
+            d = positions - x[:, None, :3, 0]
+            speed = d @ x[:, 3:]
+            inverse_square = 1 / ((d * d) @ _ONES)[..., None]
+            scale = doppler_per_speed * np.sqrt(inverse_square)
+            H[..., :3] = scale * (d * (speed * inverse_square) - x[:, None, 3:, 0])
+            H[..., 3:] = scale * d
+            PH = P @ np.swapaxes(H, -1, -2)
+            gain = PH @ np.linalg.inv(H @ PH + R)
+            x = x + gain @ (z[:, k, :, None] - scale * speed)
+            P = P - gain @ (H @ P)
+            xs[:, k], Ps[:, k] = x[..., 0], P
         return xs, Ps
 
     return run

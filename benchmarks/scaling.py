@@ -4,14 +4,13 @@
 shows: two minutes.
 """
 
-import resource
 import time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from measuring import progress, save
+from measuring import processor_time, progress, save
 
 from dopplerlib.evaluation.monte_carlo import run_rngs, run_study
 from dopplerlib.workspace.comparison import tracker_study
@@ -25,13 +24,6 @@ WORKERS = 1, 2
 def nothing(settings, seed, runs):
     """Draw one number in each run: the time of all this is that of the engine."""
     return {"x": [rng.random() for rng in run_rngs(seed, runs)]}
-
-
-def processor_time():
-    """Return the processor time in s of this process, and of the workers that have ended."""
-    kinds = resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN
-    used = [resource.getrusage(kind) for kind in kinds]
-    return sum(one.ru_utime + one.ru_stime for one in used)
 
 
 def timed(study, runs, workers, chunk):

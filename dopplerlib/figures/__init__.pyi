@@ -3,6 +3,7 @@ from . import asheim as asheim
 from . import asheim_beyond as asheim_beyond
 from . import asheim_real as asheim_real
 from . import asheim_two as asheim_two
+from . import benchmarks as benchmarks
 from . import consistency as consistency
 from . import consistent_tracker as consistent_tracker
 from . import coordinates as coordinates
