@@ -214,7 +214,9 @@ def public_functions():
 
 
 # What `ekf_update` is made of is tried through it.
-INSIDE = {extended_update.linearized, extended_update.wrapped}
+INSIDE = {
+    getattr(extended_update, name) for name in ("linearized", "predicted_measurement", "wrapped")
+}
 # A function without a call above is tried with the one that the example in its docstring makes.
 for _function in public_functions():
     if _function not in CALLS and _function not in INSIDE:
