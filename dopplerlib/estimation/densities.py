@@ -17,7 +17,7 @@ def quadratic_forms(v: FloatArray, S: FloatArray) -> FloatArray:
     there = ~np.isnan(v)
     if there.all():
         white = np.linalg.solve(cholesky(S), v.mT)
-        return np.sum(white * white, axis=-2)
+        return (white * white).sum(axis=-2)
     return quadratic_form(v, S[..., None, :, :])
 
 
@@ -34,9 +34,9 @@ def log_density(v: FloatArray, S: FloatArray) -> FloatArray:
     Zero where all components are NaN: a missing measurement favors no model.
     """
     form, L, there = _form(v, S)
-    size = np.sum(there, axis=-1)
+    size = there.sum(axis=-1)
     diagonal = np.diagonal(L, axis1=-2, axis2=-1)
-    logarithm = size * np.log(2 * np.pi) / 2 + np.sum(np.log(diagonal), axis=-1)
+    logarithm = size * np.log(2 * np.pi) / 2 + np.log(diagonal).sum(axis=-1)
     return np.where(size > 0, -form / 2 - logarithm, 0.0)
 
 
@@ -46,10 +46,10 @@ def mixture(x: FloatArray, P: FloatArray, weight: FloatArray) -> tuple[FloatArra
 
     Means x (..., M, n), covariances P (..., M, n, n) and probabilities `weight` (..., M).
     """
-    mean = np.sum(weight[..., None] * x, axis=-2)
+    mean = (weight[..., None] * x).sum(axis=-2)
     off = x - mean[..., None, :]
     spread = P + off[..., :, None] * off[..., None, :]
-    return mean, np.sum(weight[..., None, None] * spread, axis=-3)
+    return mean, (weight[..., None, None] * spread).sum(axis=-3)
 
 
 def _form(v, S):
@@ -58,9 +58,9 @@ def _form(v, S):
     if there.all():
         L = cholesky(S)
         white = np.linalg.solve(L, v[..., None])[..., 0]
-        return np.sum(white * white, axis=-1), L, there
+        return (white * white).sum(axis=-1), L, there
     both = there[..., :, None] & there[..., None, :]
     L = cholesky(np.where(both, S, np.eye(v.shape[-1])))
     white = np.linalg.solve(L, np.where(there, v, 0.0)[..., None])[..., 0]
-    form = np.where(there.any(axis=-1), np.sum(white * white, axis=-1), np.nan)
+    form = np.where(there.any(axis=-1), (white * white).sum(axis=-1), np.nan)
     return form, L, there

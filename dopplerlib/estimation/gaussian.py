@@ -8,6 +8,8 @@ Covariances are computed as squares, see `covariances`. ValueError if an innovat
 singular to rounding.
 """
 
+from functools import cache
+
 import numpy as np
 
 from .. import _checks
@@ -31,22 +33,27 @@ def innovation(x: FloatArray, z: FloatArray, H: FloatArray) -> FloatArray:
 
 @_checks.quiet
 def gain(
-    P: FloatArray, H: FloatArray, R: FloatArray, there: BoolArray | bool = True
+    P: FloatArray,
+    H: FloatArray,
+    R: FloatArray,
+    there: BoolArray | bool = True,
+    R_root: FloatArray | None = None,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the Kalman gain, the updated covariance, and that of the innovation.
 
     `there` (..., m) says which components are measured. The gain K (..., n, m) is P H' S^-1, zero
     for components that are missing; the covariance is in Joseph form,
     (I - K H) P (I - K H)' + K R K', which holds for any gain; S (..., m, m) is H P H' + R of all
-    components, also those that are missing.
+    components, also those that are missing. `R_root` is the `square_root` of R, if it is at hand.
 
     Notes
     -----
     Bar-Shalom, Li, Kirubarajan (2001), Sec 5.2.3; the Joseph form is due to Bucy and Joseph (1968).
     """
-    L = square_root(P)
-    K, S, R = _weighed(L, H @ L, R, there)
-    return K, _joseph(P, (np.eye(P.shape[-1]) - K @ H) @ L, K, R, there), S
+    L, complete = square_root(P), _all(there)
+    K, S, R = _weighed(L, H @ L, R, there, complete)
+    R_root = R_root if complete and R_root is not None else square_root(R)
+    return K, _joseph(P, (_eye(P.shape[-1]) - K @ H) @ L, K, R_root, there, complete), S
 
 
 @_checks.quiet
@@ -54,8 +61,9 @@ def gain_of_root(
     P: FloatArray, L: FloatArray, HL: FloatArray, R: FloatArray, there: BoolArray | bool = True
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the same as `gain` from L with L L' = P and from H L, as sigma points give it."""
-    K, S, R = _weighed(L, HL, R, there)
-    return K, _joseph(P, L - K @ HL, K, R, there), S
+    complete = _all(there)
+    K, S, R = _weighed(L, HL, R, there, complete)
+    return K, _joseph(P, L - K @ HL, K, square_root(R), there, complete), S
 
 
 @_checks.quiet
@@ -102,15 +110,26 @@ def smooth(
     return x, squared(A @ L, B @ B.mT)
 
 
-def _weighed(L, HL, R, there):
+def _all(there):
+    return there is True or bool(there.all())
+
+
+@cache
+def _eye(n):
+    eye = np.eye(n)
+    eye.setflags(write=False)
+    return eye
+
+
+def _weighed(L, HL, R, there, complete):
     """Return gain, S, and R in which the noise of missing components has variance 1.
 
     Missing components measure nothing: their rows of H L are zero, and their columns of the gain.
     """
     S = used = squared(HL, R)
-    if not np.all(there):
+    if not complete:
         both = there[..., :, None] & there[..., None, :]
-        eye = np.eye(there.shape[-1])
+        eye = _eye(there.shape[-1])
         used, R = np.where(both, S, eye), np.where(both, R, eye)
         HL = np.where(there[..., None], HL, 0.0)
     cholesky(used)
@@ -120,11 +139,11 @@ def _weighed(L, HL, R, there):
         raise singular(used) from None
 
 
-def _joseph(P, AL, K, R, there):
+def _joseph(P, AL, K, R_root, there, complete):
     """Return the covariance after an update with (I - K H) L, or P where nothing is there."""
-    B = K @ square_root(R)
+    B = K @ R_root
     after = squared(AL, B @ B.mT)
-    if not np.all(there):
+    if not complete:
         after = np.where(there.any(axis=-1)[..., None, None], after, P)
     return after
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from .._typing import BoolArray, FloatArray
 from . import covariances, gaussian, sigma_points
-from .extended_update import linearized, wrapped
+from .extended_update import wrapped
 from .recursion import Correct, Predict
 
 Each = Sequence[Callable[[FloatArray], FloatArray]]
@@ -30,7 +30,7 @@ def extended_motion(f: Each, F: Each, Q: FloatArray | Each) -> Predict:
     """
 
     def predict(k, x, P):
-        _, P = gaussian.predict(x, P, F[k](x), _noise(Q[k], x))
+        P = covariances.squared(F[k](x) @ covariances.square_root(P), _noise(Q[k], x))
         return f[k](x), P
 
     return predict
@@ -52,6 +52,11 @@ def _noise(Q, x):
     return Q(x) if callable(Q) else Q
 
 
+def _root(R):
+    """Return the square root of covariances R (K, m, m) that are all one, or None."""
+    return covariances.square_root(R[0]) if len(R) == 1 or not R.strides[0] else None
+
+
 def linear_measurement(
     z: FloatArray, H: FloatArray, R: FloatArray, there: BoolArray | None = None
 ) -> Correct:
@@ -60,11 +65,12 @@ def linear_measurement(
     `there` says which components are measured, and may lack the axes of the runs; by default those
     that are not NaN.
     """
+    root = _root(R)
 
     def correct(k, x, P):
         innovation = gaussian.innovation(x, z[..., k, :], H[k])
         known = ~np.isnan(z[..., k, :]) if there is None else there[..., k, :]
-        return innovation, *gaussian.gain(P, H[k], R[k], known)
+        return innovation, *gaussian.gain(P, H[k], R[k], known, root)
 
     return correct
 
@@ -73,12 +79,14 @@ def extended_measurement(
     z: FloatArray, h: Each, H: Each, R: FloatArray, wrap: Iterable[int] = (), iterations: int = 1
 ) -> Correct:
     """Return the correction by measurements of functions h with Jacobians H, see `_iterated`."""
+    root = _root(R)
 
     def correct(k, x, P, at=None, _=None):
-        innovation, J = linearized(x if at is None else at, z[..., k, :], h[k], H[k], wrap)
+        point = x if at is None else at
+        innovation, J = wrapped(z[..., k, :] - h[k](point), wrap), H[k](point)
         if at is not None:
             innovation = gaussian.innovation(x - at, innovation, J)
-        return innovation, *gaussian.gain(P, J, R[k], ~np.isnan(innovation))
+        return innovation, *gaussian.gain(P, J, R[k], ~np.isnan(innovation), root)
 
     return _iterated(correct, iterations)
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .. import _checks
+from .._records import filled
 from .._typing import FloatArray
 from . import densities, gaussian
 from .track import Track
@@ -19,6 +20,7 @@ from .track import Track
 Predict = Callable[[int, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 Correct = Callable[[int, FloatArray, FloatArray], tuple[FloatArray, ...]]
 Bounds = tuple[FloatArray, FloatArray, bool]
+_FIELDS = tuple(Track.__annotations__)
 
 
 def scan(
@@ -108,9 +110,12 @@ def _track(x, P, innovation, S, *gated):
     """Return the track of outputs of `cycle`; without a gate NIS is computed here."""
     if not gated:
         gated = [densities.quadratic_form(innovation, S), _count(innovation) > 0]
-    runs = x.shape[:-1]
-    P, S = (np.broadcast_to(v, (*runs, *v.shape[-2:])) for v in (P, S))
-    return Track(x, P, innovation, S, *gated)
+    # Runs may share covariances.
+    P, S = (_checks.each_run("", v, x.shape[:-1], v.shape[-2:]) for v in (P, S))
+    fields = dict(zip(_FIELDS, (x, P, innovation, S, *gated), strict=True))
+    for value in fields.values():
+        value.setflags(write=False)
+    return filled(Track, fields)
 
 
 def finite(names: str, track: Track) -> Track:
@@ -119,8 +124,11 @@ def finite(names: str, track: Track) -> Track:
     A component that is missing leaves NaN in the innovation, and a scan without any in NIS.
     """
     innovation = track.innovation
-    _checks.estimates(names, track.x, track.P, track.S, innovation[~np.isnan(innovation)])
-    _checks.estimates("z", np.where(_count(innovation) > 0, track.nis, 0.0))
+    _checks.estimates(names, track.x, track.P, track.S)
+    if not _checks.all_finite(innovation):
+        _checks.estimates(names, innovation[~np.isnan(innovation)])
+    if not _checks.all_finite(track.nis):
+        _checks.estimates("z", np.where(_count(innovation) > 0, track.nis, 0.0))
     return track
 
 
@@ -129,4 +137,4 @@ def _part_way(before, after, weight):
 
 
 def _count(innovation):
-    return np.sum(~np.isnan(innovation), axis=-1)
+    return (~np.isnan(innovation)).sum(axis=-1)

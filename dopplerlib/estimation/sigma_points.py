@@ -61,14 +61,16 @@ def regression(
     covariance of what the regression line misses.
     """
     s, t = scale
-    steps = s * np.concatenate([np.zeros_like(L.mT[..., :1, :]), L.mT, -L.mT], axis=-2)
+    n = x.shape[-1]
+    steps = np.zeros((*L.shape[:-2], 2 * n + 1, n))
+    steps[..., 1 : n + 1, :] = s * L.mT
+    steps[..., n + 1 :, :] = s * -L.mT
     value = function(x[..., None, :] + steps)
     middle = value[..., 0, :]
     away = wrapped(value[..., 1:, :] - middle[..., None, :], wrap)
-    n = x.shape[-1]
     plus, minus = away[..., :n, :], away[..., n:, :]
     d = (plus + minus) / 2
-    mu = np.sum(d, axis=-2) / s**2
+    mu = d.sum(axis=-2) / s**2
     return middle + mu, (plus - minus).mT / (2 * s), (d - t * mu[..., None, :]).mT / s
 
 

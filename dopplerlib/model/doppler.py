@@ -82,10 +82,10 @@ def doppler_jacobian(x: ArrayLike, array: RadarArray | DopplerLinks) -> FloatArr
     with np.errstate(all="ignore"):
         if isinstance(array, RadarArray):
             _, *gradient = kernel.doppler_shift_and_gradient(*_arguments(x, array)[0])
-            H = np.stack(gradient, axis=-1)
+            H = _stacked(gradient)
         else:
             legs = (moving.leg_shift_and_gradient(*leg) for leg in _arguments(x, array))
-            target = sum(np.stack(gradient, axis=-1) for _, *gradient in legs)
+            target = sum(_stacked(gradient) for _, *gradient in legs)
             H = np.zeros((*target.shape[:-1], array.n))
             H[..., :6] = target
             H[..., 6 : 6 + array.clocks.shape[1]] = array.clocks
@@ -120,9 +120,17 @@ def _state(x, array):
     return x
 
 
+def _stacked(columns):
+    """Return columns (...) as rows (..., 6); `np.stack` takes five times as long for a few."""
+    rows = np.empty((*columns[0].shape, len(columns)))
+    for i, column in enumerate(columns):
+        rows[..., i] = column
+    return rows
+
+
 def _arguments(x, array):
     """Return the arguments of the kernels, for each leg."""
-    columns = np.moveaxis(x[..., None, :6], -1, 0)
+    columns = [x[..., i, None] for i in range(6)]
     if isinstance(array, RadarArray):
         return [(*columns, *array.positions.T, array.doppler_per_speed)]
     return [(*columns, *np.moveaxis(end, -1, 0), per_speed) for end, per_speed in array.legs]
