@@ -7,13 +7,22 @@ built. Its picture at the start is stored beside it, for paper and for readers w
 import json
 import shutil
 import subprocess
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.stats import chi2
 
-from dopplerlib import RadarArray, chi2_interval, constant_velocity, doppler_shift
+from dopplerlib import (
+    RadarArray,
+    chi2_interval,
+    constant_velocity,
+    doppler_shift,
+    ml_initialize,
+    simulate,
+)
 from dopplerlib._files import write_text
 from dopplerlib.chain.collision import _normal
 from dopplerlib.derive import doppler, ekf, ring
@@ -23,6 +32,9 @@ from dopplerlib.evaluation.intervals import proportion_interval, quantile_interv
 from dopplerlib.model.motion import dwna_gain
 from dopplerlib.systems import asheim2015 as thesis
 from dopplerlib.systems import mittermaier2016 as paper
+from dopplerlib.systems import sombatsatien as student
+from dopplerlib.systems.sombatsatien.descent import local_start
+from dopplerlib.systems.sombatsatien.variants import LONG
 from dopplerlib.workspace.stop_study import LABELS, THRESHOLDS, saved_stops
 from dopplerlib.workspace.stopping import RADIUS, RULES, judge_stops
 from tools.command import parser, start
@@ -31,10 +43,11 @@ FOLDER = Path(__file__).resolve().parent.parent / "book" / "_explorables"
 KERNELS = "kernels.js"
 TRACKER = "tracker.js"
 COMPUTING = {"shifts", "blind"}  # those that use the printed kernels
-TRACKING = {"hero", "filter"}  # and those that also run a filter
+TRACKING = {"hero", "filter", "repairs"}  # and those that also run a filter
 TRACKERS = "truth", "bank", "paper", "ekf_bayes", "ekf", "ukf", "ring_iekf"
 LENGTHS = 21, 31, 41, 61, 81, 101, 151, 201, 251, 301, 401, 501, 601, 701, 801  # samples
 MOMENTS = 0.999  # confidence of the intervals that needles are compared with
+RUNS = 6  # of a filter that failed
 POINTS = 64  # states that are tried for a probability of collision
 BIN, LAST = 0.025, 39  # s of lead, and the number of the last class
 WIDTH = 360  # of a still picture in pixels: it is read on a phone, and printed
@@ -65,6 +78,52 @@ def _hero():
         "threshold": 0.5,
         "normal": _normal(POINTS).T.tolist(),
     }
+
+
+def _repairs():
+    """Return the student's system, the paper's ring, and the starts of some runs for each."""
+    told, settings = student.reported(), student.reported().start
+    s = told.scenario
+    gain, _ = dwna_gain(np.array(s.T), 1.0, "shared")
+    return {
+        "planes": {plane: _ring(plane, settings) for plane in "zx"},
+        "perSpeed": s.array.doppler_per_speed,
+        "x0": s.x0.tolist(),
+        "T": s.T,
+        "columns": gain.T.tolist(),
+        "sigmaA": s.sigma_a,
+        "sigmaF": s.sigma_f,
+        "P0": s.P0[0, 0],
+        "samples": s.samples,
+        "every": 10,
+        "told": {"error": told.run.final_position_error, "nees": chi2.median(6)},
+    }
+
+
+def _ring(plane, settings):
+    """Return the sensors of a ring, and what three searches find in the first samples of records.
+
+    The page makes the other samples, whose noise does not depend on these.
+    """
+    s = student.ring_scenario(plane)
+    _, z = simulate(replace(s, samples=LONG), RUNS, rng=np.random.default_rng(8))
+    short, box = z[:, : settings.samples], (settings.lower, settings.upper)
+    search = partial(ml_initialize, array=s.array, sigma_f=s.sigma_f, T=s.T, box=box, at="last")
+    long = search(z)
+    return {
+        "sensors": s.array.positions.tolist(),
+        "starts": {
+            "one descent": _used(short, local_start(short, s.array, settings.guess, box)[0]),
+            "global search": _used(short, search(short).x),
+            "global, of 0.1 s": _used(z, long.x)
+            | {"P": [[[float(f"{v:.6g}") for v in row] for row in P] for P in long.P]},
+        },
+    }
+
+
+def _used(z, x):
+    # Another processor may stop a search elsewhere, by less than a rounding of these.
+    return {"used": z.shape[1], "x": x.round(5).tolist()}
 
 
 def _shifts():
@@ -202,6 +261,7 @@ def _by_lead(lead):
 
 SETTINGS = {
     "hero": _hero,
+    "repairs": _repairs,
     "shifts": _shifts,
     "blind": _blind,
     "filter": _filter,

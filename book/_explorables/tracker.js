@@ -67,12 +67,12 @@ const tracker = (() => {
     return sorted.length % 2 ? sorted[half] : (sorted[half - 1] + sorted[half]) / 2;
   }
 
-  // NEES of some runs at each of some samples, and mean NIS of the `window` samples before it.
+  // NEES of some runs at each of some samples, and the mean NIS of the `window` samples before it.
   function judged(records, every, window, average) {
     return {
       nees: every.map((k) => average(records.map(({ P, error }) => algebra.distance(P(k), error[k])))),
       nis: every.filter((k) => k + 1 >= window).map((k) =>
-        mean(records.map(({ nis }) => mean(nis.slice(k + 1 - window, k + 1))))),
+        average(records.map(({ nis }) => mean(nis.slice(k + 1 - window, k + 1))))),
     };
   }
 
