@@ -13,7 +13,7 @@ A square root counts as a division, which is no slower. Nothing is fused, or the
 
 import ctypes
 import time
-from itertools import product
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -26,7 +26,7 @@ from dopplerlib.derive import ekf as derive
 from dopplerlib.derive.operations import KINDS, count_operations
 from dopplerlib.derive.printers import python_function
 
-CHAINS, TIMES, STEPS = 12, 400_000, 40
+CHAINS, TIMES, STEPS = 12, 2_000_000, 40
 FACTOR = 1.0 + 1e-9
 WRITTEN = 8 * (6 + 1) + 1  # bytes of a step and run: x, NIS, whether there was an update
 EXPRESSIONS = {
@@ -90,50 +90,46 @@ def main():
     """Measure, and write what was measured."""
     scenario = Scenario.from_toml(SCENARIO)
     sensors = len(scenario.array)
-    z = np.ascontiguousarray(simulate(scenario, RUNS, rng=np.random.default_rng(2016))[1])
-    filters = {
-        "one run": (z[:1], peers_c.Filters(scenario, scenario.x0, 1), 20),
-        "many runs": (z, peers_c.Filters(scenario, scenario.x0, peers_c.LANES), 1),
-    }
-    keep_nothing, clocks, done = ours(scenario, scenario.x0, ()), {}, {}
-
-    def add(key, run, repetitions, operations):
-        clocks[key], done[key] = (run, repetitions), operations
-
-    for runs, (records, peer, repetitions) in filters.items():
-        own, in_c = (records[0] if runs == "one run" else records), peer.in_c("C")
-        for name, run in {
-            "dopplerlib": lambda own=own: keep_nothing(own),
-            "dopplerlib, its loop alone": lambda peer=peer, z=records: peer.loop(z),
-            "C": lambda in_c=in_c, z=records: in_c(z),
-        }.items():
-            add((runs, name), run, repetitions, records.size // sensors)
-        # A copy moves z twice; a step reads z and writes its results.
-        moved = records.size // sensors * 2 / (1 + WRITTEN / (8 * sensors))
-        add((runs, "bound by memory"), records.copy, repetitions, moved)
-    for kind, (waits, alone) in product(EXPRESSIONS, ((1, True), (0, True), (0, False))):
-        add((kind, waits, alone), *chains(kind, 1 if waits else CHAINS, alone=alone))
+    tasks = filters(scenario)
+    for kind in EXPRESSIONS:
+        tasks["latency", kind] = chains(kind, 1, alone=True)
+        tasks["one at a time", kind] = chains(kind, CHAINS, alone=True)
+        tasks["in vectors", kind] = chains(kind, CHAINS, alone=False)
+    clocks = {key: (run, repetitions) for key, (run, repetitions, _) in tasks.items()}
     times = interleaved("filters and operations", clocks, time.process_time)
-    times = {key: seconds / done[key] for key, seconds in times.items()}
-    latency = {kind: times[kind, 1, True] for kind in EXPRESSIONS}
-    count = operations_of_a_step(sensors)
-    found = {
-        "sensors": sensors,
-        "operations": count,
-        "latency": latency,
-        "one at a time": {kind: times[kind, 0, True] for kind in EXPRESSIONS},
-        "in vectors": {kind: times[kind, 0, False] for kind in EXPRESSIONS},
-    }
+    found = {"sensors": sensors, "operations": operations_of_a_step(sensors)}
+    for (group, name), seconds in times.items():
+        found.setdefault(group, {})[name] = seconds / tasks[group, name][2]
     bounds = {
-        "one run": {"bound by latency": waiting(latency, sensors)}
-        | throughput(count, found["one at a time"]),
-        "many runs": throughput(count, found["in vectors"]),
+        "one run": {"bound by latency": waiting(found["latency"], sensors)}
+        | throughput(found["operations"], found["one at a time"]),
+        "many runs": throughput(found["operations"], found["in vectors"]),
     }
-    found |= {
-        runs: bounds[runs] | {key[1]: times[key] for key in reversed(times) if key[0] == runs}
-        for runs in filters
-    }
+    found |= {runs: bound | found[runs] for runs, bound in bounds.items()}
     save("limit", found, ("numpy", "numba", "sympy"))
+
+
+def filters(scenario):
+    """Return {(kind, name): (call, its repetitions in a round, steps that it filters)}."""
+    z = np.ascontiguousarray(simulate(scenario, RUNS, rng=np.random.default_rng(2016))[1])
+    sensors, keep_nothing, tasks = z.shape[-1], ours(scenario, scenario.x0, ()), {}
+    for kind, records, lanes, repetitions in (
+        ("one run", z[:1], 1, 20),
+        ("many runs", z, peers_c.LANES, 1),
+    ):
+        peer = peers_c.Filters(scenario, scenario.x0, lanes)
+        steps = records.size // sensors
+        # A copy reads z and writes it; a step reads z and writes its results.
+        copied = steps * 2 / (1 + WRITTEN / (8 * sensors))
+        own = records[0] if kind == "one run" else records
+        for name, run, argument, done in (
+            ("bound by memory", np.copy, records, copied),
+            ("C", peer.in_c("C"), records, steps),
+            ("dopplerlib, its loop alone", peer.loop, records, steps),
+            ("dopplerlib", keep_nothing, own, steps),
+        ):
+            tasks[kind, name] = partial(run, argument), repetitions, done
+    return tasks
 
 
 def chains(kind, count, *, alone):
