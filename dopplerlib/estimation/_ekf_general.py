@@ -3,6 +3,8 @@
 For sensors that stand still it does what `_ekf_loop` does, some twenty times slower.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .._typing import FloatArray
@@ -30,8 +32,19 @@ def filter_general(
     """
     K = z.shape[-2]
     each = [array.at_sample(k) if isinstance(array, DopplerLinks) else array for k in range(K)]
-    F, Q = motion
-    check_clear_of_sensors("F x0", (x0 @ F[0].T)[..., :6], each[0])
+    check_clear_of_sensors("F x0", (x0 @ motion[0][0].T)[..., :6], each[0])
+    rules = general_rules(z, each, motion, variance)
+    track = recursion.filter_records(x0, P0, *rules, range(K), z.ndim - 2, bounds)
+    return recursion.finite("z, array, x0, P0", track)
+
+
+def general_rules(
+    z: FloatArray,
+    each: Sequence[RadarArray | DopplerLinks],
+    motion: tuple[FloatArray, FloatArray],
+    variance: FloatArray,
+) -> tuple[recursion.Predict, recursion.Correct]:
+    """Return the functions of `recursion.cycle`, with arguments as above and an array a sample."""
 
     def correct(k, x, P):
         try:
@@ -51,9 +64,7 @@ def filter_general(
                 f"it, got at sample {k}: {error}"
             ) from None
 
-    predict = models.linear_motion(F, Q)
-    track = recursion.filter_records(x0, P0, predict, correct, range(K), z.ndim - 2, bounds)
-    return recursion.finite("z, array, x0, P0", track)
+    return models.linear_motion(*motion), correct
 
 
 def general_motion(

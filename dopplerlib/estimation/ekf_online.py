@@ -1,6 +1,7 @@
 """The Doppler filter of `ekf` for samples that come one by one, in microseconds."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from itertools import repeat
 from typing import Literal
 
@@ -10,9 +11,12 @@ from .. import _checks
 from .._records import filled
 from .._typing import ArrayLike
 from ..model.doppler import check_clear_of_sensors
+from ..model.motion import constant_velocity
 from ..model.radar_array import RadarArray
+from ._ekf_general import general_rules
 from ._ekf_setting import check_not_infinite, noise_columns
 from .extended_kalman import _OPTIONAL, gate_bounds
+from .online import _online
 from .track import Track
 
 _BLOCK = 2048  # numbers for which memory is taken at once, if a sample has not more
@@ -27,7 +31,7 @@ def ekf_online(
     sigma_a: float,
     sigma_f: ArrayLike,
     noise: Literal["shared", "per_axis", "horizontal"] = "shared",
-    gate: Literal["upper", "two-sided"] | None = None,
+    gate: Literal["upper", "two-sided", "soft"] | None = None,
     *,
     gate_probability: float = 0.95,
     keep: Iterable[str] = _OPTIONAL,
@@ -50,8 +54,9 @@ def ekf_online(
         Standard deviation of the measurements in Hz.
     noise : {"shared", "per_axis", "horizontal"}
         Process noise, see `constant_velocity`.
-    gate : {None, "upper", "two-sided"}
-        Which measurements are used, see `ekf`.
+    gate : {None, "upper", "two-sided", "soft"}
+        Which measurements are used, see `ekf`. "soft" is not compiled, and takes a hundred times
+        as long.
     gate_probability : float
         Probability of the gate.
     keep : sequence of {"P", "innovation", "S"}
@@ -94,12 +99,14 @@ def ekf_online(
     N = len(_checks.instance("array", array, RadarArray))
     usual = _checks.one_number("T", T, _checks.deviation), _deviations(sigma_f, N).copy()
     columns = noise_columns(np.array([usual[0]]), sigma_a, noise)[0]
-    _checks.one_of("gate", gate, (None, "upper", "two-sided"))
-    bounds = gate_bounds(gate, N, gate_probability)
+    _checks.one_of("gate", gate, (None, "upper", "two-sided", "soft"))
+    bounds = gate_bounds("upper" if gate == "soft" else gate, N, gate_probability)
     x0 = _checks.exact_shape("x0", _checks.finite("x0", x0, (6,)), (6,))
     P0 = _checks.one_matrix("P0", _checks.covariance("P0", P0, 6, definite=False))
     keep = _checks.some_of("keep", keep, _OPTIONAL)
     check_clear_of_sensors("F x0", x0[:3] + usual[0] * x0[3:], array)
+    if gate == "soft":
+        return _soft(array, x0, P0, usual, sigma_a, noise, bounds, keep)
 
     from ._ekf_loop import INFINITE, NIS, UPDATED, SampleMemory, compiled_step
 
@@ -112,10 +119,9 @@ def ekf_online(
     def write(T, sigma_f):
         """Write interval, noise and variances of the next sample to the memory."""
         nonlocal last
-        found = [a if b is None else b for a, b in zip(usual, (T, sigma_f), strict=True)]
-        interval = _checks.one_number("T", found[0], _checks.deviation)
+        interval, deviations = _chosen(usual, T, sigma_f, N)
         columns = noise_columns(np.array([interval]), sigma_a, noise)
-        memory.variance[:] = _deviations(found[1], N) ** 2
+        memory.variance[:] = deviations**2
         memory.noise[: columns.size] = columns.reshape(-1)
         memory.T[0] = interval
         # What may change in its place is written each time.
@@ -161,6 +167,31 @@ def ekf_online(
         return filled(Track, fields)
 
     return update
+
+
+def _soft(array, x0, P0, usual, sigma_a, noise, bounds, keep):
+    """Return the same function for a soft gate, which is not compiled."""
+    N = len(array)
+    sample, variance = np.full((1, N), np.nan), np.empty((1, N))
+    F, Q = np.empty((1, 6, 6)), np.empty((1, 6, 6))
+    rules = general_rules(sample, [array], (F, Q), variance)
+    step = _online(sample, (x0, P0), *rules, (*bounds, True), "z, array, x0, P0")
+    dropped = {name: None for name in _OPTIONAL if name not in keep}
+
+    def update(z: ArrayLike, T: float | None = None, sigma_f: ArrayLike | None = None) -> Track:
+        """Take the next sample (N,) in Hz and return the estimate after it."""
+        interval, deviations = _chosen(usual, T, sigma_f, N)
+        F[:], Q[:] = constant_velocity(np.array([interval]), sigma_a, noise)
+        variance[:] = deviations**2
+        return replace(step(z), **dropped)
+
+    return update
+
+
+def _chosen(usual, T, sigma_f, N):
+    """Return interval and standard deviations of a sample, checked; None stands for the usual."""
+    interval = usual[0] if T is None else _checks.one_number("T", T, _checks.deviation)
+    return interval, usual[1] if sigma_f is None else _deviations(sigma_f, N)
 
 
 def _deviations(sigma_f, N):

@@ -30,7 +30,7 @@ def assert_same_bits(one, track, k):
         assert got.tobytes() == want.tobytes(), (name, k)
 
 
-@pytest.mark.parametrize("gate", [None, "upper", "two-sided"])
+@pytest.mark.parametrize("gate", [None, "upper", "two-sided", "soft"])
 @pytest.mark.parametrize("noise", ["shared", "per_axis", "horizontal"])
 def test_doppler_filter(noise, gate):
     z = record()
@@ -42,24 +42,26 @@ def test_doppler_filter(noise, gate):
         assert_same_bits(one, track, k)
 
 
-def test_intervals_may_vary_and_come_back():
+@pytest.mark.parametrize("gate", [None, "soft"])
+def test_intervals_may_vary_and_come_back(gate):
     z = record()
     intervals = np.full(len(z), T)
     intervals[[3, 4, 17, 59]] = 2e-3, 5e-4, 3e-3, 7e-4
-    track = ekf(z, RING, START, P0, intervals, 0.4, 0.4)
-    update = ekf_online(RING, START, P0, T, 0.4, 0.4)
+    track = ekf(z, RING, START, P0, intervals, 0.4, 0.4, gate=gate)
+    update = ekf_online(RING, START, P0, T, 0.4, 0.4, gate=gate)
     for k, sample in enumerate(z):
         given = {} if intervals[k] == T else {"T": float(intervals[k])}
         assert_same_bits(update(sample, **given), track, k)
 
 
-def test_deviations_may_vary_and_come_back():
+@pytest.mark.parametrize("gate", [None, "soft"])
+def test_deviations_may_vary_and_come_back(gate):
     z = record()
     sigma_f = np.full((len(z), 6), 0.4)
     sigma_f[[3, 4, 17]] = np.random.default_rng(2).uniform(0.2, 0.9, (3, 6))
     sigma_f[30:33] = 0.7
-    track = ekf(z, RING, START, P0, T, 0.4, sigma_f)
-    update, mine = ekf_online(RING, START, P0, T, 0.4, 0.4), np.empty(6)
+    track = ekf(z, RING, START, P0, T, 0.4, sigma_f, gate=gate)
+    update, mine = ekf_online(RING, START, P0, T, 0.4, 0.4, gate=gate), np.empty(6)
     for k, sample in enumerate(z):
         mine[:] = sigma_f[k]  # the same array with other numbers
         given = {"sigma_f": 0.7 if k in (30, 31) else mine} if sigma_f[k, 0] != 0.4 else {}
@@ -75,11 +77,12 @@ def test_two_targets_do_not_share_a_state():
         assert_same_bits(one(z[k]), track, k)
 
 
+@pytest.mark.parametrize("gate", [None, "soft"])
 @pytest.mark.parametrize("keep", [(), ("P",), ("innovation",), ("S",), ("S", "P")])
-def test_keep_leaves_the_rest_out(keep):
+def test_keep_leaves_the_rest_out(keep, gate):
     z = record()
-    track = ekf(z, RING, START, P0, T, 0.4, 0.4, keep=keep)
-    update = ekf_online(RING, START, P0, T, 0.4, 0.4, keep=keep)
+    track = ekf(z, RING, START, P0, T, 0.4, 0.4, gate=gate, keep=keep)
+    update = ekf_online(RING, START, P0, T, 0.4, 0.4, gate=gate, keep=keep)
     for k, sample in enumerate(z):
         found = update(sample)
         for name in FIELDS:
@@ -164,7 +167,7 @@ def test_a_setting_that_is_none_is_named_and_changes_nothing(name, value):
         ({"P0": -np.eye(6)}, "P0 must"),
         ({"T": [0.1, 0.2]}, "T must"),
         ({"sigma_f": np.ones((2, 6))}, "sigma_f must"),
-        ({"gate": "soft"}, "gate must"),
+        ({"gate": "hard"}, "gate must"),
         ({"x0": [0, 0.2, 0, 0, 0, 0], "array": RadarArray([[0, 0.2, 0]])}, "F x0 must"),
     ],
 )
