@@ -2,7 +2,8 @@
 
 Also repairs of what stands below: an id that every exercise has again, heads of columns that are
 empty, roles of the bibliography that no screen reader understands; columns of words, which wrap and
-begin at the left, while those of numbers do neither.
+begin at the left, while those of numbers do neither, but for an interval: in a wide table it stands
+below its value.
 """
 
 import re
@@ -29,6 +30,7 @@ ROW = re.compile(r"<tr>.*?</tr>", re.S)
 ENTRY = re.compile(r"<(?:td|th)(?=[ >])")
 PHRASE = re.compile(r"[^\W\d]\S* \S")  # begins with a word, and another one follows
 HYPHEN = re.compile(r"(?<![^\s(])-(?=\d)")
+INTERVAL = re.compile(r" (?=\([^()<]* to [^()<]*\))")  # the space before: "2.5 (1.0 to 4.0)"
 PROSE = (nodes.paragraph, nodes.caption, nodes.emphasis, nodes.strong)
 ROLES = re.compile(r' role="(?:list|doc-biblioentry)"(?=[^>]*>)')
 
@@ -104,7 +106,7 @@ def repaired(body):
     """Return a page whose tables have no empty heads, and minuses; whose lists hold items."""
     body = EMPTY_HEAD.sub("<td></td>", body)
     body = CELL.sub(lambda m: HYPHEN.sub("\u2212", m[0]), body)
-    body = RESULTS.sub(lambda m: _phrases(m[0]), body)
+    body = RESULTS.sub(lambda m: _phrases(INTERVAL.sub(" <wbr>", m[0])), body)
     return ROLES.sub("", body) if "citation-list" in body else body
 
 
