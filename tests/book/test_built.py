@@ -10,6 +10,8 @@ import pytest
 
 ID = re.compile(r'<[^>]*\sid="([^"]+)"')
 LINK = re.compile(r'<a\b[^>]*\shref="([^"]*)"')
+GRADE = re.compile(r'<p class="grade">(.*?)</p>')
+GRADES = ["By hand", "At the computer", "A small project"]
 PRINTED = re.compile(r'<div class="cell_output.*?(?=<div class="cell docutils|</section>)', re.S)
 
 
@@ -71,3 +73,9 @@ def test_every_chapter_gives_its_notebook_and_every_page_a_description(pages, bu
         if 'class="reading-time"' in text:
             (notebook,) = re.findall(r'href="([^"]*)" download', text)
             assert (built_book / notebook).stat().st_size > 1000
+
+
+def test_exercises_go_from_paper_to_the_computer_to_a_project(pages):
+    grades = {page: [GRADES.index(g) for g in GRADE.findall(text)] for page, text in pages.items()}
+    assert {page: found for page, found in grades.items() if found != sorted(found)} == {}
+    assert sum(2 in found for found in grades.values()) >= 12

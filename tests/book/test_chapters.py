@@ -73,3 +73,14 @@ def test_three_key_takeaways_stand_before_the_exercises(name):
 def test_the_same_section_has_the_same_heading(name):
     assert OTHER_WORDS.findall(prose(name)) == []
     assert "{admonition} In practice" not in prose(name)
+
+
+def test_every_project_has_a_solution_that_a_cell_computes():
+    """The marks of its beginning and end enclose a code cell with an output."""
+    for name, cells in BOOK.items():
+        projects = re.findall(r"^:label: (.+)\n:class: project$", prose(name), re.M)
+        sources = [cell.source for cell in cells]
+        for label in projects:
+            (start,) = [i for i, s in enumerate(sources) if f"{{solution-start}} {label}\n" in s]
+            end = next(i for i in range(start + 1, len(cells)) if "{solution-end}" in sources[i])
+            assert any(cell.get("outputs") for cell in cells[start + 1 : end]), label

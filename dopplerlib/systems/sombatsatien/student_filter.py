@@ -14,7 +14,13 @@ from ...model.doppler import doppler_jacobian
 from ...model.motion import constant_velocity
 from ...model.radar_array import RadarArray
 
-Jacobian = Literal["as reported", "derived"]
+Jacobian = Literal["as reported", "derived", "velocity reversed", "all reversed"]
+_SIGNS = {  # of the columns of position and of velocity
+    "as reported": (-1.0, 1.0),
+    "derived": (1.0, 1.0),
+    "velocity reversed": (1.0, -1.0),
+    "all reversed": (-1.0, -1.0),
+}
 
 
 @checked
@@ -26,8 +32,9 @@ def student_jacobian(
     x (..., 6): States in m and m/s.
     array: The N sensors.
     jacobian: "as reported": the three columns that belong to the position have the wrong sign.
+        "derived": none has. Two more mistakes for comparison: the columns of the velocity, or all.
     Returns (..., N, 6): In Hz per m and Hz per m/s.
-    Raises ValueError if `jacobian` is neither, or an argument is refused by `doppler_jacobian`.
+    Raises ValueError if `jacobian` is none of these, or `doppler_jacobian` refuses an argument.
 
     Examples
     --------
@@ -116,4 +123,4 @@ def _solved(S, right, k):
 
 def _signs(jacobian):
     """Return the factors of the derivative's columns."""
-    return np.repeat([-1.0 if jacobian == "as reported" else 1.0, 1.0], 3)
+    return np.repeat(_SIGNS[jacobian], 3)

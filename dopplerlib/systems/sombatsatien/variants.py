@@ -145,9 +145,8 @@ def post_mortem(
     if isinstance(start, str):
         start, own = _start(start, first, s, settings, true_start)
     start = _checks.each_run("start", start, (runs,), (6,))
-    track = (student_ekf if jacobian == "as reported" else ekf)(
-        rest, s.array, start, own if P0 is None else P0, s.T, s.sigma_a, s.sigma_f
-    )
+    given = rest, s.array, start, own if P0 is None else P0, s.T, s.sigma_a, s.sigma_f
+    track = ekf(*given) if jacobian == "derived" else student_ekf(*given, jacobian)
     error = track.x - truth
     return PostMortem(
         s.time[used:],
