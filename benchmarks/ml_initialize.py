@@ -1,25 +1,25 @@
 """How often `ml_initialize` finds the global optimum, how fast, and what SciPy needs for that.
 
-``python benchmarks/ml_initialize.py [scenarios [SciPy scenarios]]`` prints Markdown to standard
-output and progress to standard error. With 1000 and 60, the defaults, it takes half an hour.
+``make bench NAME=ml_initialize`` writes what the chapter on benchmarks shows: two minutes.
+``python benchmarks/ml_initialize.py 1000 60 100`` takes half an hour: so many scenarios, of which
+SciPy solves so many, from so many starts.
 
 The optimum is the least cost that anybody found: `ml_initialize`; 300 refinements from random
-states by the compiled Levenberg-Marquardt of the library; and, for the first scenarios, SciPy's
-`least_squares` with an analytic Jacobian from 100 random states. Times are processor time, of one
-thread: those of `ml_initialize` of the whole batch and its median over rounds, those of SciPy of
-all its fits. How many starts SciPy needs follows from the share f of its starts that reach the
-optimum, in each scenario: n starts succeed with probability 1 - (1 - f)^n.
+states by the compiled Levenberg-Marquardt of the library; and, for the first scenarios, SciPy:
+`least_squares` from random states, `basinhopping` and `differential_evolution`, the two with its
+settings but for the number of hops, on variables scaled to the box, and with a last
+`least_squares`. SciPy gets the analytic Jacobian, and the mean of the samples where that is all
+that counts. Times are processor time of one thread.
 """
 
-import os
-import platform
 import sys
 import time
 
 import numpy as np
+from measuring import ROUNDS, progress, save
 from numba import njit
-from scipy.optimize import least_squares
-from scipy.stats import beta
+from scipy.optimize import basinhopping, differential_evolution, least_squares
+from scipy.special import comb
 
 from dopplerlib import RadarArray, doppler_shift, ml_initialize
 from dopplerlib.estimation import _ml_refine
@@ -30,77 +30,69 @@ LINE, RING = RadarArray.linear(5, 0.4), RadarArray.ring(6, 0.2)
 SPACE = np.array([[0.1, -0.75, -0.75, -2, -2, -2], [1.5, 0.75, 0.75, 2, 2, 2]])
 PLANE = SPACE * [1, 1, 0, 1, 1, 0]
 CASES = {
-    "line of five, 2-D, static": (LINE, PLANE, "stationary"),
-    "line of five, 2-D, moving": (LINE, PLANE, "constant_velocity"),
+    "line of five, static": (LINE, PLANE, "stationary"),
+    "line of five, moving": (LINE, PLANE, "constant_velocity"),
     "ring of six, static": (RING, SPACE, "stationary"),
     "ring of six, moving": (RING, SPACE, "constant_velocity"),
 }
 LEVELS = np.logspace(-2, 0, 5)  # standard deviations in Hz; a fifth of the scenarios each
 RANDOM_STARTS = 300
-SCIPY_STARTS = 100
+HOPS = 20
 SAME = 1e-6  # two costs (chi-square) are the same optimum if they differ by less, plus this share
 SCIPY_SAME = 1e-2  # for SciPy, which stops earlier; without any weight as a statistic
-ROUNDS = 7
 
 
 def main():
-    scenarios = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    scipy_scenarios = int(sys.argv[2]) if len(sys.argv) > 2 else 60
-    print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, ")
-    print(f"load {', '.join(f'{load:.1f}' for load in os.getloadavg())} at the start.\n")
-    print(
-        "| | optimum found | 95 % interval | ms a solve | SciPy: ms a fit | starts for the same "
-        "rate | ms | ÷ ml_initialize | SciPy, 100 starts: better / as good / worse |\n"
-        "|---|---|---|---|---|---|---|---|---|"
-    )
-    for name, case in CASES.items():
-        print(row(name, case, scenarios, scipy_scenarios), flush=True)
-    print(f"\nLoad at the end: {', '.join(f'{load:.1f}' for load in os.getloadavg())}.")
+    scenarios, scipy_scenarios, starts = map(int, sys.argv[1:] or (200, 25, 30))
+    cases = {
+        name: studied(name, case, scenarios, scipy_scenarios, starts)
+        for name, case in CASES.items()
+    }
+    found = {"hops": HOPS, "starts": starts, "cases": cases}
+    save("ml_initialize", found, packages=("numpy", "numba", "scipy"))
 
 
-def row(name, case, scenarios, scipy_scenarios):
-    """Return one line of the table."""
+def studied(name, case, scenarios, scipy_scenarios, starts):
+    """Return which optima were found, and times in s, of one array and likelihood."""
     z, sigma_f = measurements(case, scenarios)
-    cost, milliseconds = ours(z, sigma_f, case)
-    best = cost.copy()
+    progress(f"{name}: ml_initialize, and random starts")
+    cost, seconds = ours(z, sigma_f, case)
     rng = np.random.default_rng(3)
-    for i in range(scenarios):
-        best[i] = min(best[i], random_starts(z[i], sigma_f[i], case, rng))
-        progress(f"{name}: random starts", i, scenarios)
-    fits, fit_time = [], 0.0
-    for i in range(scipy_scenarios):
-        began = time.process_time()
-        fits.append(scipy_fits(z[i], sigma_f[i], case, rng))
-        fit_time += time.process_time() - began
-        best[i] = min(best[i], *fits[-1])
-        progress(f"{name}: SciPy", i, scipy_scenarios)
-    fits = np.array(fits)
-    found = cost <= best * (1 + SAME) + SAME
-    count = int(found.sum())
-    low = beta.ppf(0.025, count, scenarios - count + 1)
-    high = beta.ppf(0.975, count + 1, scenarios - count) if count < scenarios else 1.0
-
-    first, own = cost[:scipy_scenarios], found[:scipy_scenarios]
-    share = np.mean(fits <= (best[:scipy_scenarios] * (1 + SAME) + SCIPY_SAME)[:, None], axis=1)
-    per_fit = 1e3 * fit_time / fits.size
-    rate = min(own.mean(), count / scenarios)
-    number = starts_needed(share, rate)
-    least = fits.min(axis=1)
-    tie = np.abs(least - first) <= 1e-9 * first + 1e-9
-    verdict = [
-        int(np.sum(~tie & (least < first))),
-        int(tie.sum()),
-        int(np.sum(~tie & (least > first))),
-    ]
-    if number is None:  # not reached by any number: some optimum was never hit
-        number, sign = SCIPY_STARTS, "> "
-    else:
-        sign = ""
-    return (
-        f"| {name} | {count} of {scenarios} | {100 * low:.1f} to {100 * high:.1f} % "
-        f"| {milliseconds:.3f} | {per_fit:.1f} | {sign}{number} | {sign}{number * per_fit:.0f} "
-        f"| {sign}{number * per_fit / milliseconds:.0f} | {' / '.join(map(str, verdict))} |"
+    best = np.array(
+        [min(c, random_starts(*one, case, rng)) for c, *one in zip(cost, z, sigma_f, strict=True)]
     )
+    costs, times = {}, {}
+    for i in range(scipy_scenarios):
+        progress(f"{name}: scenario {i + 1} of {scipy_scenarios} for SciPy")
+        for method, solve in solvers(z[i], sigma_f[i], case, starts, rng).items():
+            began = time.process_time()
+            costs.setdefault(method, []).append(np.atleast_1d(solve()))
+            times.setdefault(method, []).append(time.process_time() - began)
+        best[i] = min(best[i], *(rows[i].min() for rows in costs.values()))
+    limit = best[:scipy_scenarios, None] * (1 + SAME) + SCIPY_SAME
+    hits = {method: np.sum(rows <= limit, axis=1) for method, rows in costs.items()}
+    fits = hits.pop("least_squares")
+    own = {"found": np.sum(cost <= best * (1 + SAME) + SAME), "of": scenarios, "s": seconds}
+    return {
+        "ml_initialize, batch": own,  # time of a scenario in each round
+        **{
+            method: {"found": np.sum(of_one), "of": scipy_scenarios, "s": times[method]}
+            for method, of_one in hits.items()
+        },  # time of each scenario
+        "least_squares": {
+            "of": scipy_scenarios,
+            "s": np.divide(times["least_squares"], starts),  # of a start, by scenario
+            "share": [successes(fits, starts, n) for n in range(1, starts + 1)],
+        },
+    }
+
+
+def successes(hits, starts, n):
+    """Return the expected share of scenarios of which some of n starts finds the optimum.
+
+    hits: For each scenario how many of `starts` found it; the n are drawn from these.
+    """
+    return np.mean(1 - comb(starts - hits, n) / comb(starts, n))
 
 
 def measurements(case, scenarios):
@@ -121,7 +113,7 @@ def measurements(case, scenarios):
 
 
 def ours(z, sigma_f, case):
-    """Return the costs of `ml_initialize` and its time for one solve in ms."""
+    """Return the costs of `ml_initialize`, and the time for a scenario in s, of all rounds."""
     array, box, likelihood = case
     cost = np.empty(len(z))
     times = []
@@ -131,7 +123,7 @@ def ours(z, sigma_f, case):
             rows = sigma_f == sigma
             cost[rows] = ml_initialize(z[rows], array, sigma, T, box, likelihood, workers=1).cost
         times.append(time.process_time() - began)
-    return cost, 1e3 * np.median(times[1:]) / len(z)
+    return cost, np.array(times[1:]) / len(z)
 
 
 @njit
@@ -154,10 +146,11 @@ def random_starts(z, sigma_f, case, rng):
     )
 
 
-def scipy_fits(z, sigma_f, case, rng):
-    """Return the costs of SciPy's fits from random states."""
+def solvers(z, sigma_f, case, starts, rng):
+    """Return {method: function} that return the cost of the scenario, that of starts for each."""
     array, box, likelihood = case
-    free = box[0] < box[1]
+    whole, level = z, sigma_f
+    free, size = box[0] < box[1], box[1] - box[0]
     F = np.eye(6) + np.zeros((len(z), 6, 6))
     scatter = 0.0
     if likelihood == "constant_velocity":
@@ -166,40 +159,53 @@ def scipy_fits(z, sigma_f, case, rng):
         mean = z.mean(axis=0)[None]
         scatter = np.sum((z - mean) ** 2) / sigma_f**2
         z, sigma_f, F = mean, sigma_f / np.sqrt(len(z)), F[:1]
-    x = box[0].copy()
-    sensors = *array.positions.T, array.doppler_per_speed
+    x, sensors = box[0].copy(), (*array.positions.T, array.doppler_per_speed)
+    columns = [np.broadcast_to(one, len(array))[:, None] for one in sensors]
+    bounds = [(0, 1)] * free.sum()
 
     # The printed kernels themselves: no time for checks of arguments.
     def residuals(u):
-        x[free] = u
+        x[free] = box[0, free] + size[free] * u
         return ((kernel.doppler_shift(*(F @ x).T[..., None], *sensors) - z) / sigma_f).ravel()
 
     def jacobian(u):
-        x[free] = u
+        x[free] = box[0, free] + size[free] * u
         _, *gradient = kernel.doppler_shift_and_gradient(*(F @ x).T[..., None], *sensors)
-        return (np.stack(gradient, axis=-1) @ F / sigma_f).reshape(-1, 6)[:, free]
+        return (np.stack(gradient, axis=-1) @ F * (size / sigma_f)).reshape(-1, 6)[:, free]
 
-    bounds = box[:, free]
-    return [
-        scatter
-        + 2 * least_squares(residuals, start, jacobian, bounds, x_scale="jac", max_nfev=1000).cost
-        for start in rng.uniform(*bounds, (SCIPY_STARTS, free.sum()))
-    ]
+    def value_and_gradient(u):
+        r = residuals(u)
+        return r @ r, 2 * r @ jacobian(u)
 
+    def values(u):
+        """Return the costs of a population, a state a column."""
+        many = np.repeat(box[0][:, None], u.shape[1], axis=1)
+        many[free] += size[free, None] * u
+        shifts = kernel.doppler_shift(*(F @ many).swapaxes(0, 1)[:, :, None], *columns)
+        return np.sum(((shifts - z[..., None]) / sigma_f) ** 2, axis=(0, 1))
 
-def starts_needed(share, rate):
-    """Return the least number of starts that succeed as often as `rate`, or None."""
-    for n in range(1, 100 * SCIPY_STARTS):
-        if np.mean(1 - (1 - share) ** n) >= rate - 1e-3:
-            return n
-    return None
+    def fitted(u):
+        u = np.clip(u, 1e-9, 1 - 1e-9)
+        found = least_squares(residuals, u, jacobian, (0, 1), x_scale="jac", max_nfev=1000)
+        return scatter + 2 * found.cost
 
+    def hopped():
+        local = {"method": "L-BFGS-B", "jac": True, "bounds": bounds}
+        u = rng.random(free.sum())
+        return basinhopping(value_and_gradient, u, HOPS, minimizer_kwargs=local, rng=rng).x
 
-def progress(text, i, total):
-    if i % 10 == 9 or i == total - 1:
-        print(f"\r{text}: {i + 1} of {total}   ", end="", file=sys.stderr, flush=True)
-        if i == total - 1:
-            print(file=sys.stderr)
+    def evolved():
+        vectorized = {"vectorized": True, "updating": "deferred"}
+        return differential_evolution(values, bounds, polish=False, rng=rng, **vectorized).x
+
+    return {
+        "ml_initialize, single": lambda: (
+            ml_initialize(whole, array, level, T, box, likelihood, workers=1).cost
+        ),
+        "least_squares": lambda: [fitted(rng.random(free.sum())) for _ in range(starts)],
+        "basinhopping": lambda: fitted(hopped()),
+        "differential_evolution": lambda: fitted(evolved()),
+    }
 
 
 if __name__ == "__main__":
