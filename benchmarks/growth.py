@@ -2,9 +2,9 @@
 
 ``make bench NAME=growth`` writes what the chapter on benchmarks shows, in a minute. Processor time
 of one thread. A call has a constant cost, the time of the smallest: one run of one step, or one
-run. The exponent is fitted by least squares to the logarithms of sizes and of median times, where
-these are at least ten times the constant cost; its interval is Student's, from the scatter about
-the line.
+run. The exponent is fitted by least squares to the logarithms of sizes and of median times less the
+constant cost, where the times are at least ten times as large; its interval is Student's, from the
+scatter about the line.
 """
 
 import time
@@ -62,7 +62,7 @@ def clocked(title, calls):
 def exponent(sizes, seconds, constant):
     """Return the exponent of the growth with its 95 % interval, and what it was fitted to."""
     used = seconds >= COUNTS * constant
-    x, y = np.log(np.asarray(sizes)[used]), np.log(seconds[used])
+    x, y = np.log(np.asarray(sizes)[used]), np.log(seconds[used] - constant)
     line = linregress(x, y)
     half = t.ppf(0.975, len(x) - 2) * line.stderr
     return {
