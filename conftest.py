@@ -18,11 +18,14 @@ gc.disable()  # until all is collected: a fifth of the time, for modules and tes
 # At once: other files of this kind import NumPy and Matplotlib.
 PREPARED = ExitStack()
 PREPARED.enter_context(own_profile())
-# A chapter's figures are drawn, and their pixels compared with nothing: a coarse raster, drawn once
-# (a tight box is drawn twice), shows every error and warning that a fine one would.
+# The figures of chapters are laid out, once (a tight box is drawn twice), but their pixels would be
+# compared with nothing.
 SETTINGS = Path(os.environ["IPYTHONDIR"]) / "profile_default" / "ipython_config.py"
 SETTINGS.parent.mkdir()
-SETTINGS.write_text("c.InlineBackend.print_figure_kwargs = {'bbox_inches': None, 'dpi': 80}\n")
+figures = {"bbox_inches": None, "dpi": 80}
+if sys.platform == "linux":  # a copied kernel finds `tools`
+    figures["backend"] = "module://tools.unpainted"
+SETTINGS.write_text(f"c.InlineBackend.print_figure_kwargs = {figures}\n")
 # Their kernels are copies of one process, where processes can be copied.
 SPEC = Path(os.environ["JUPYTER_DATA_DIR"]) / "kernels" / "copied" / "kernel.json"
 SPEC.parent.mkdir(parents=True)
