@@ -63,10 +63,30 @@ window.book = (() => {
     for (const formula of document.querySelectorAll(formulas)) formula.replaceChildren();
   }
 
+  // How many letters links have, and how many are beside them, in the line of a text that holds a link.
+  function line(text, link) {
+    let counted = { links: 0, beside: 0 }, here = false;
+    const nodes = document.createTreeWalker(text, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT);
+    while (nodes.nextNode()) {
+      const node = nodes.currentNode;
+      if (node === link) here = true;
+      else if (node.localName === "br") {
+        if (here) break;
+        counted = { links: 0, beside: 0 };
+      } else if (node.nodeType === Node.TEXT_NODE) {
+        counted[node.parentElement.closest("a[href]") ? "links" : "beside"] += node.data.replace(/\s/g, "").length;
+      }
+    }
+    return counted;
+  }
+
   // Marks one text for each look that is not known: all others of its color, size and weight on its
-  // background have its contrast. Returns the looks that are new.
+  // background have its contrast. Likewise one link in a text, for each look beside that of the text.
+  // Returns the looks that are new.
   function mark(known) {
-    for (const marked of document.querySelectorAll("[data-look]")) marked.removeAttribute("data-look");
+    for (const name of ["look", "link"]) {
+      for (const marked of document.querySelectorAll(`[data-${name}]`)) delete marked.dataset[name];
+    }
     const grounds = new Map([[null, ""]]);
     const ground = (element) => {
       if (!grounds.has(element)) {
@@ -91,6 +111,31 @@ window.book = (() => {
       found.push(look);
       element.dataset.look = "";
     }
+
+    const style = (element) => {
+      const { color, font, textDecorationLine, borderTop, borderBottom, outline } = getComputedStyle(element);
+      return [color, font, textDecorationLine, borderTop, borderBottom, outline].join(" ");
+    };
+    const unclear = new Map();
+    for (const link of document.querySelectorAll("a[href]")) {
+      if (!link.checkVisibility()) continue;
+      let text = link.parentElement;
+      while (getComputedStyle(text).display === "inline") text = text.parentElement;
+      const { links, beside } = line(text, link);
+      if (!beside) continue;
+      const look = ["link", link.className, style(link), style(text), ground(link)].join(" ");
+      if (old.has(look)) continue;
+      // Where links are longer than what is beside them, axe decides whether they stand in a text.
+      if (beside <= links) unclear.set(look, [...(unclear.get(look) ?? []), link]);
+      else {
+        old.add(look);
+        found.push(look);
+        link.dataset.link = "";
+      }
+    }
+    for (const [look, links] of unclear) {
+      if (!old.has(look)) for (const link of links) link.dataset.link = "";
+    }
     return found;
   }
 
@@ -102,11 +147,12 @@ window.book = (() => {
         const why = [...node.any, ...node.all, ...node.none].map(({ message }) => message);
         return `axe: ${id}: ${node.target.join(" ")}: ${why.join("; ")}`;
       }));
-  // What axe finds with the rules of these impacts, or with that of contrast alone.
-  const axeFinds = (contrastOnly) => {
-    axe.configure({ rules: [{ id: "color-contrast", selector: "[data-look]" }] });
+  // What axe finds with the rules of these impacts, or with those of colors alone.
+  const colors = { "color-contrast": "[data-look]", "link-in-text-block": "[data-link]" };
+  const axeFinds = (colorsOnly) => {
+    axe.configure({ rules: Object.entries(colors).map(([id, selector]) => ({ id, selector })) });
     const rules = axe._audit.rules.filter(({ enabled, impact }) => enabled && impacts.includes(impact));
-    const chosen = contrastOnly ? ["color-contrast"] : rules.map(({ id }) => id);
+    const chosen = colorsOnly ? Object.keys(colors) : rules.map(({ id }) => id);
     const options = { resultTypes: ["violations"], preload: false, performanceTimer: false };
     return axe.run(document, { ...options, runOnly: chosen }).then(heavy);
   };
