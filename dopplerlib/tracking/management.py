@@ -83,7 +83,7 @@ class TrackManager:
         -------
         TrackLife
         """
-        return TrackLife(*begun(self))
+        return TrackLife(*_begun(self))
 
     @checked
     def advance(self, life: TrackLife, detected: bool) -> TrackLife:
@@ -101,15 +101,17 @@ class TrackManager:
         TrackLife
             Once deleted, a track stays so.
         """
-        return TrackLife(*advanced(self, life.status, life.recent, life.age, life.misses, detected))
+        return TrackLife(
+            *_advanced(self, life.status, life.recent, life.age, life.misses, detected)
+        )
 
 
-def begun(manager: TrackManager) -> Life:
+def _begun(manager: TrackManager) -> Life:
     """Return the fields of the status of a new track, unchecked: a tracker has thousands."""
     return CONFIRMED if manager.hits == 1 else TENTATIVE, (True,), 1, 0
 
 
-def advanced(
+def _advanced(
     manager: TrackManager,
     status: Status,
     recent: tuple[bool, ...],

@@ -12,7 +12,7 @@ from .._typing import ArrayLike, BoolArray, FloatArray, IntArray
 from ..estimation import densities, gaussian
 from ..estimation.extended_update import predicted_measurement, wrapped
 from .association import gnn_assign
-from .management import CONFIRMED, DELETED, TrackManager, advanced, begun
+from .management import CONFIRMED, DELETED, TrackManager, _advanced, _begun
 
 
 def _whole(name, value):
@@ -273,12 +273,12 @@ def _started(start, z, n):
 
 def _begin(number, x, P, detection, manager):
     track = {name: [] for name in ("scan", "x", "P", "detection", "confirmed")}
-    _append(track, begun(manager), number, x, P, detection)
+    _append(track, _begun(manager), number, x, P, detection)
     return track
 
 
 def _extend(track, number, x, P, detection, manager):
-    life = advanced(manager, *track["life"], bool(detection >= 0))
+    life = _advanced(manager, *track["life"], bool(detection >= 0))
     if life[0] == DELETED:
         track["life"] = life
     else:
