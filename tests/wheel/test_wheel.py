@@ -174,20 +174,17 @@ def test_the_wheel_holds_the_library_and_its_data(wheel):
     assert wheel.stat().st_size < 3.5e6  # two thirds of it what the studies found, run by run
 
 
-def test_everything_works_where_it_is_installed(installed):
-    told = used(installed)
-    assert told["errors"] == []
+def test_everything_works_where_it_is_installed_with_warnings_as_errors_and_a_strict_numpy(
+    installed,
+):
+    told = used(installed, "strict", flags=("-W", "error"))
+    assert told["errors"] == [] and "spawn" in told["calls"]
     modules = {
         path.relative_to(installed).with_suffix("").as_posix().replace("/", ".")
         for path in (installed / "dopplerlib").rglob("*.py")
         if path.stem not in ("__init__", "__main__")
     }
     assert modules <= set(told["imports"])
-
-
-def test_nothing_minds_warnings_as_errors_and_a_strict_numpy(installed):
-    told = used(installed, "strict", flags=("-W", "error"))
-    assert told["errors"] == [] and "spawn" in told["calls"]
 
 
 def test_without_extras_all_else_works_and_they_are_named_with_their_command(installed):
