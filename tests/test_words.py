@@ -8,10 +8,9 @@ import ast
 import re
 from pathlib import Path
 
-import nbformat
 import pytest
 
-from tools.notebooks import chapters
+from tools.notebooks import chapters, stored_cells
 
 ROOT = Path(__file__).resolve().parents[1]
 LIBRARY = ROOT / "dopplerlib"
@@ -96,7 +95,7 @@ def titles_and_captions(path):
     if path.suffix == ".md":
         yield from re.findall(r"^#+ (.+)$", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
         return
-    for cell in nbformat.read(path, as_version=4).cells:
+    for cell in stored_cells(path):
         if cell.cell_type == "markdown":
             yield from re.findall(r"^#+ (.+)$", cell.source, flags=re.MULTILINE)
         yield cell.metadata.get("mystnb", {}).get("figure", {}).get("caption", "")

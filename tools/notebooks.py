@@ -12,6 +12,7 @@ import os
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
 
 import nbformat
@@ -49,6 +50,12 @@ def chapters(book=ROOT / "book"):
         for path in book.rglob("*.ipynb")
         if not any(part.startswith(("_", ".")) for part in path.relative_to(book).parts)
     )
+
+
+@cache
+def stored_cells(path):
+    """Return the cells of a chapter as they are stored, read once: nobody changes them."""
+    return nbformat.read(path, as_version=4).cells
 
 
 def read(path):

@@ -3,11 +3,10 @@
 import re
 from pathlib import Path
 
-import nbformat
 import pytest
 import yaml
 
-from tools.notebooks import chapters
+from tools.notebooks import chapters, stored_cells
 
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
@@ -27,7 +26,7 @@ def name(path):
 
 def code_cells(path):
     """Return (label, cell) for every cell that has code."""
-    cells = nbformat.read(path, as_version=4).cells
+    cells = stored_cells(path)
     return [
         (f"cell {number} ({cell.id})", cell)
         for number, cell in enumerate(cells)
@@ -38,7 +37,7 @@ def code_cells(path):
 def prose(path):
     if path.suffix == ".md":
         return path.read_text(encoding="utf8")
-    cells = nbformat.read(path, as_version=4).cells
+    cells = stored_cells(path)
     return "\n\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
 
 

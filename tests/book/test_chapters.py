@@ -3,14 +3,13 @@
 import ast
 import re
 
-import nbformat
 import pytest
 
 from dopplerlib.derive.printers import WIDTH
-from tools.notebooks import chapters
+from tools.notebooks import chapters, stored_cells
 
 MOST_PRINTING = 60  # lines in all chapters together: what prints is code, and a word here or there
-BOOK = {path.stem: nbformat.read(path, as_version=4).cells for path in chapters()}
+BOOK = {path.stem: stored_cells(path) for path in chapters()}
 WITH_EXERCISES = [name for name in BOOK if any("## Exercises" in c.source for c in BOOK[name])]
 # Sections that had a heading of their own in each chapter.
 OTHER_WORDS = re.compile(

@@ -4,15 +4,14 @@ import importlib.util
 import re
 from functools import cache
 
-import nbformat
 import pytest
 
 from dopplerlib.replication._cells import ours
 from dopplerlib.replication.documents import documents, read_document
 from dopplerlib.replication.judgments import read_judgments
-from tools.notebooks import ROOT, chapters
+from tools.notebooks import ROOT, chapters, stored_cells
 
-BOOK = {path.stem: nbformat.read(path, as_version=4).cells for path in chapters()}
+BOOK = {path.stem: stored_cells(path) for path in chapters()}
 PAGES = sorted({(name, one.page) for name in documents() for one in read_document(name).claims})
 # A page that says by which rules a verdict is made has to name the verdicts.
 RULES = {"scorecard_mittermaier2016": "sec-verdict-rules"}

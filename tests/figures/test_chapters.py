@@ -6,15 +6,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import get_args, get_origin, get_type_hints
 
-import nbformat
 import numpy as np
 import pytest
 
 from dopplerlib import _hints
-from tools.notebooks import ROOT, chapters
+from tools.notebooks import ROOT, chapters, stored_cells
 
 CODE = {
-    path.stem: "\n".join(c.source for c in nbformat.read(path, 4).cells if c.cell_type == "code")
+    path.stem: "\n".join(c.source for c in stored_cells(path) if c.cell_type == "code")
     for path in chapters()
 }
 MODULES = sorted(
