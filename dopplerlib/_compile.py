@@ -6,6 +6,7 @@ from pickle import UnpicklingError
 
 from numba import njit
 from numba.core.caching import FunctionCache
+from numba.core.runtime import rtsys
 
 
 def cached_njit(function=None, **options):
@@ -50,12 +51,18 @@ def fingerprint(*modules):
 
 
 class _Cache(FunctionCache):
-    """numba's cache, for which a place that fails later on is no error either."""
+    """numba's cache, for which a place that fails later on is no error either.
+
+    Before it loads anything, numba fills the tables by which it compiles, and imports SciPy for
+    them: that takes four times as long as to load this library's functions, which need only the
+    counting of references. Who compiles fills the tables then.
+    """
 
     def load_overload(self, sig, target_context):
         with suppress(OSError):
             try:
-                return super().load_overload(sig, target_context)
+                rtsys.initialize(target_context)
+                return self._load_overload(sig, target_context)
             except (EOFError, UnpicklingError):  # a file was cut short
                 self.flush()
 

@@ -1,5 +1,8 @@
 """Compiling the filter takes seconds, so it must happen once."""
 
+import subprocess
+import sys
+
 import numpy as np
 
 from dopplerlib import RadarArray, doppler_shift, ekf
@@ -20,3 +23,24 @@ def test_the_loop_is_compiled_once_however_the_arguments_are_given():
     assert len(compiled(LANES).signatures) == 1
     for mine in (z, each_x, each_P):
         assert mine.flags.writeable  # what the caller gave stays as it was
+
+
+def test_loading_from_the_cache_needs_no_tables_of_numba():
+    """They take four times as long, and load SciPy; who compiles afterwards gets them."""
+    code = """
+import sys
+import numpy as np
+from dopplerlib import RadarArray, ekf
+start = [0.8, 0.1, 0.1, -0.7, 0, 0], np.eye(6)
+track = ekf(np.zeros((3, 6)), RadarArray.ring(6, 0.2), *start, 0.001, 0.4, 0.4)
+print(track.x.tobytes().hex(), "scipy.linalg" in sys.modules)
+"""
+    compile_more = (
+        'import numba\nprint(numba.njit(lambda x: x + 1)(1), "scipy.linalg" in sys.modules)'
+    )
+    first, second = (
+        subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+        for text in (code, code + compile_more)
+    )
+    x, _ = first.stdout.split()
+    assert second.stdout.split() == [x, "False", "2", "True"]
