@@ -86,8 +86,9 @@ class InitialEstimate:
         "stationary", a target that moves is a reason, too.
         """
         cost, degrees = _checks.real("cost", self.cost), _checks.real("degrees", self.degrees)
-        scale, at_bound = _checks.real("scale", self.scale), np.asarray(self.at_bound)
-        weights = _checks.real("weights", self.weights)
+        scale = _checks.real("scale", self.scale)
+        at_bound = _checks.booleans("at_bound", self.at_bound, (None,))
+        weights = _checks.measured("weights", self.weights, (None, None))
         _checks.check_leading(
             cost=(cost, 0), degrees=(degrees, 0), scale=(scale, 0), weights=(weights, 2),
             at_bound=(at_bound, 1),

@@ -244,7 +244,7 @@ def _arguments(z, Q, R, x0, P0, wrap, gate, gate_probability):
     x0 = _checks.finite("x0", x0, (None,))
     n = x0.shape[-1]
     P0 = _checks.covariance("P0", P0, n, definite=False)
-    z = _checks.measured("z", z, (None, None))
+    z = _checks.bounded("z", z, (None, None))
     if not z.size or not n:
         name, value = ("z", z) if n else ("x0", x0)
         raise ValueError(f"{name} must not be empty, got shape {value.shape}")

@@ -242,9 +242,8 @@ def _moments(function, x, P, given):
     slope = covariances.solve(P[..., :3, :3], P[..., :3, 3:]).mT
     left = covariances.square_root(P[..., 3:, 3:] - slope @ P[..., :3, 3:])
     steps = points @ covariances.square_root(P[..., :3, :3]).mT
-    at = np.repeat(x[..., None, :], len(weight), axis=-2)
-    at[..., order] += np.concatenate([steps, steps @ slope.mT], axis=-1)
-    value, slopes = function(at)
+    steps = np.concatenate([steps, steps @ slope.mT], axis=-1)
+    value, slopes = function(x[..., None, :] + steps[..., np.argsort(order)])
     mean = weight @ value
     root = np.sqrt(weight)[:, None]
     off = root * (value - mean[..., None, :])

@@ -141,6 +141,7 @@ class RemedyRuns:
 
 
 @checked
+@_checks.quiet
 def remedy_runs(
     F: ArrayLike,
     Q: ArrayLike,
@@ -211,6 +212,7 @@ def remedy_runs(
         if k:
             errors[k] = rho * errors[k - 1] + np.sqrt(1 - rho**2) * errors[k]
         truth[:, k], z[:, k] = x, x @ H.T + errors[k]
+    _checks.estimates("F, Q and H", z, what="measurements")
     one, start = np.eye(m), (np.zeros(n), P0)
     kept = np.arange(samples) % every == 0
     colored = augment_linear(F, Q, H, _WHITE**2 * one, *start, sigma=1, tau=-1 / np.log(rho), T=1)

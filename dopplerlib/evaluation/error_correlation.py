@@ -107,7 +107,7 @@ def error_correlation(
     """
     from scipy.special import stdtrit
 
-    y = _checks.measured("residual", residual, (None,))
+    y = _checks.bounded("residual", residual, (None,))
     K = y.shape[-1]
     if lags >= K:
         raise ValueError(f"lags must be less than the number of samples {K}, got {lags}")

@@ -1,12 +1,14 @@
 """Symptoms of a mistake in a recording or its setup, and the cause that they speak for."""
 
 import warnings
+from typing import Annotated
 
 import numpy as np
 
 from .. import _checks
-from .._hints import Array, Number, checked
+from .._hints import Number, checked, exactly
 from .._records import record
+from .._typing import FloatArray
 from ..chain.alternatives import explain
 from ..chain.setup import Setup
 from ..estimation.initial_estimate import ImplausibleStart
@@ -56,7 +58,7 @@ class Symptoms:
         See `explain`.
     """
 
-    present: Array
+    present: Annotated[FloatArray, exactly(None, check=_checks.bounded)]
     line: Number
     drift: Number
     chirp: Number = np.nan

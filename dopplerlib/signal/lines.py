@@ -1,14 +1,15 @@
 """Lines at known frequencies, such as the hum of mains or a constant that drifts, taken out."""
 
 from collections.abc import Sequence
+from typing import Annotated
 
 import numpy as np
 import scipy.fft
 
 from .. import _checks
-from .._hints import AboveZero, checked
+from .._hints import AboveZero, checked, up_to
 from .._typing import ArrayLike, BoolArray, ComplexArray
-from .sliding import sliding_doppler
+from .sliding import _MOST, sliding_doppler
 from .validity import known_samples
 
 _ROUNDS = 4  # of finding the echo beside the lines, and the lines beside the echo
@@ -24,7 +25,7 @@ def remove_lines(
     x: ArrayLike,
     fs: AboveZero,
     lines: ArrayLike,
-    window: int,
+    window: Annotated[int, up_to(_MOST, 3)],
     *,
     width: AboveZero = 4.0,
     band: Sequence[float] | None = None,

@@ -86,7 +86,7 @@ def ml_frequency_real_dc(
     Returns
     -------
     ndarray, shape (...)
-        See `ml_frequency_real`.
+        See `ml_frequency_real`; NaN for samples that are all the same.
 
     Raises
     ------

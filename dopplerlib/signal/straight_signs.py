@@ -8,6 +8,7 @@ from .._typing import ArrayLike, IntArray
 
 
 @checked
+@_checks.quiet
 def straight_signs(f: ArrayLike, sigma_f: ArrayLike, confidence: Probability = 0.999) -> IntArray:
     """Return the signs of the Doppler shifts of a target that goes straight.
 
@@ -49,8 +50,8 @@ def straight_signs(f: ArrayLike, sigma_f: ArrayLike, confidence: Probability = 0
     >>> straight_signs(np.full((6, 1), 40.0), 0.5)[:, 0].tolist()
     [0, 0, 0, 0, 0, 0]
     """
-    f = np.abs(_checks.measured("f", f, (None, None)))
-    sigma_f = _checks.positive("sigma_f", sigma_f)
+    f = np.abs(_checks.bounded("f", f, (None, None)))
+    sigma_f = _checks.bounded("sigma_f", _checks.positive("sigma_f", sigma_f))
     try:
         sigma_f = np.broadcast_to(sigma_f, f.shape)
     except ValueError:

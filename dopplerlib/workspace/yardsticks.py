@@ -29,6 +29,7 @@ SAMPLES = (20, 60, 100, 200, 300)  # of the records, when the posterior is compu
 
 _Case = Literal["A", "B", "C", "D"]
 _Errors = Annotated[FloatArray, _checks.numbers]
+_Squared = Annotated[FloatArray, _checks.bounded]  # so that squares are finite
 
 
 @checked
@@ -172,7 +173,7 @@ def saved_yardsticks(case: _Case) -> Yardsticks:
 
 
 @checked
-def rms_ratio(one: _Errors, other: _Errors, *, rng: np.random.Generator) -> ConfidenceInterval:
+def rms_ratio(one: _Squared, other: _Squared, *, rng: np.random.Generator) -> ConfidenceInterval:
     """Return the ratio of the root mean squares of two errors of the same runs.
 
     Parameters

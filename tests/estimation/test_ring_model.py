@@ -92,6 +92,15 @@ def test_small_clouds_go_there_and_back():
     np.testing.assert_allclose(P_back, np.stack([P, P]), atol=1e-3 * P.max())
 
 
+def test_one_state_takes_several_covariances():
+    model = RingModel(RING, T, SIGMA)
+    several = np.stack([np.eye(6), 4 * np.eye(6)]) * 1e-6
+    together = model.start(STATES[0], several)
+    for i, P in enumerate(several):
+        for found, alone in zip(together, model.start(STATES[0], P), strict=True):
+            np.testing.assert_allclose(found[i], alone, rtol=1e-9, atol=1e-15)
+
+
 def test_a_broad_prior_keeps_its_spread():
     """Beside 40 000 draws; three points an axis are exact to the fifth order, not beyond."""
     x0, P0 = np.array([0.8, 0, 0, -0.75, 0, 0]), np.diag([0.2, *[0.25] * 5]) ** 2

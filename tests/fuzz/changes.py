@@ -109,7 +109,7 @@ REPRESENTATIONS += [
 ]
 WHOLE = [
     changed("same", "a[()]", True),
-    changed("same", "a.astype('i2')[()]", True),
+    changed("same", "a.astype('i4')[()]", True),
     changed("same", "a.item()", True),
     changed("same", "a.astype('>i4')", None),
     changed("same", "a.astype('f8')[()]", None),

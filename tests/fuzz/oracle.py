@@ -17,7 +17,7 @@ from dopplerlib.estimation.initial_estimate import ImplausibleStart
 from .documented import refused
 from .values import Raised
 
-SECONDS = 60  # for one call; in the first one numba may compile
+SECONDS = 60  # of processor time, for one call; in the first one numba may compile
 # How a docstring says that a result may hold NaN or infinity.
 MISSING = re.compile(r"\b(nan|missing|infinit\w*|inf)\b", flags=re.IGNORECASE)
 
@@ -37,13 +37,13 @@ def limited(seconds=SECONDS):
     def stop(number, frame):
         raise Hang
 
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def fresh(call):
@@ -166,12 +166,17 @@ def _components(odd):
 
 
 def _fields(call):
-    """Return the names of the fields of all records among the arguments, also in containers."""
-    values = list(call.values())
-    values += [item for value in values if isinstance(value, dict) for item in value.values()]
-    values += [item for value in values if isinstance(value, (list, tuple)) for item in value]
-    records = [value for value in values if dataclasses.is_dataclass(value)]
-    return {field.name for record in records for field in dataclasses.fields(record)}
+    """Return the names of the fields of all records in the arguments, in containers and records."""
+    values, names = list(call.values()), set()
+    for value in values:  # which grow
+        if isinstance(value, dict):
+            values += value.values()
+        elif isinstance(value, (list, tuple)):
+            values += value
+        elif dataclasses.is_dataclass(value):
+            names |= vars(value).keys()
+            values += vars(value).values()
+    return names
 
 
 def _check_taken(target, call, odd, result):

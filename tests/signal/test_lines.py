@@ -126,6 +126,7 @@ def test_near_is_either_side_of_either_sign():
         ({"lines": [50, 53]}, "lines must be 4 Hz apart or more, .* got 3 Hz"),
         ({"lines": [1]}, "lines must be 4 Hz apart or more, also from their negatives, got 2 Hz"),
         ({"window": 5000}, "window must be at most the 4000 samples of the record, got 5000"),
+        ({"window": 0}, "window must be a whole number of at least 3, got 0"),
         ({"width": 0}, "width must be positive, got 0"),
         ({"x": ECHO * np.nan}, "x must be finite"),
     ],

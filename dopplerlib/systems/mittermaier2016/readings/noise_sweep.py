@@ -205,6 +205,11 @@ def sweep_score(
     >>> low <= high
     True
     """
+    if figure.velocity.shape != figure.position.shape:
+        raise ValueError(
+            "figure must have positions and velocities of the same draws, got "
+            f"{figure.position.shape} and {figure.velocity.shape}"
+        )
     rows = [int(np.argmin(np.abs(noise_levels() - variance))) for variance in figure.variance]
     dots = published.position[rows], published.velocity[rows]
     draws = figure.position.shape[1]
