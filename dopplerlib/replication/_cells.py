@@ -12,8 +12,7 @@ def badge(kind, word):
 
 def link(entry):
     """Return the link to the cell of a chapter that a record names."""
-    page = entry.page.replace("_", " ")
-    return f'<a href="{entry.page}.html#cell-{entry.cell}">{page}</a>'
+    return f'<a href="{entry.page}.html#cell-{entry.cell}">computation</a>'
 
 
 def table(head, rows):
@@ -46,7 +45,7 @@ def flips(judgment):
     """Return lines on the choices that turn the verdict, or on the range for which it stands."""
     claim, lines = judgment.claim, []
     for name, by_verdict in judgment.flips.items():
-        parts = [f"{verdict} at {_values(values)}" for verdict, values in by_verdict.items()]
+        parts = [f"{verdict} ({_values(values)})" for verdict, values in by_verdict.items()]
         lines.append(f"{name}: {'; '.join(parts)}")
     if claim.limit is not None and claim.form == "relation":
         found = sorted(_middle(one.ours) for one in judgment.points if not one.beyond)

@@ -30,7 +30,7 @@ def test_a_row_shows_both_sides_and_the_way_to_the_cell(tmp_path):
     row = deviations._repr_markdown_().splitlines()[2]
     assert 'deviation-gap">gap<' in row
     assert r"The box $\|x\|$ is not told." in row
-    assert '<a href="start.html#cell-boxes">start</a>' in row
+    assert '<a href="start.html#cell-boxes">computation</a>' in row
 
 
 @pytest.mark.parametrize(

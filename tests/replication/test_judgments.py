@@ -61,7 +61,7 @@ def test_a_page_shows_its_own_claims_with_number_verdict_and_flips(on_record):
     assert lines[0] == "limit: undecided"
     assert lines[2] == "open: underdetermined"
     assert lines[3] == "  published < 1 m, ours 0.75 m"
-    assert lines[4] == "  count: reproduced at 3; contradicted at 5"
+    assert lines[4] == "  count: reproduced (3); contradicted (5)"
     row = page._repr_markdown_().splitlines()[-1]
     assert row.startswith("| Two are.<br>")
     assert 'href="scorecard_valarmathi.html#claim-open"' in row

@@ -49,7 +49,7 @@ def test_a_row_shows_numbers_verdict_cell_and_test():
     assert "| < 0.3 m | 0.2 (0.19 to 0.21) m |" in limit
     assert "The start is not told." in open_
     assert "nearest at start this" in open_
-    assert "start: reproduced at this, other; contradicted at that" in open_
+    assert "start: reproduced (this, other); contradicted (that)" in open_
     assert 'verdict-underdetermined">underdetermined<' in open_
 
 
@@ -88,7 +88,7 @@ def test_a_limit_of_ours_tells_its_range_and_where_the_verdict_turns():
     row, _, turned = Scorecard((judge(claim, 12.0, [MUCH]),))._repr_markdown_().splitlines()[-3:]
     assert turned.endswith("these would change: none")
     assert "| 3 within a factor of 2 to 10 m | 12 m<br>" in row
-    assert "much: contradicted at 2; reproduced at 10" in row
+    assert "much: contradicted (2); reproduced (10)" in row
 
 
 def test_what_is_no_finding_is_counted_apart():
