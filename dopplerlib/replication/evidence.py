@@ -128,7 +128,7 @@ def sweep(
     if rng is not None:
         children = _checks.generator("rng", rng).spawn(len(values))
         arguments = tuple((child, *one) for child, one in zip(children, values, strict=True))
-    places = _tried(len(values))
+    places = _tried(choices, len(values))
     values = tuple(values[place] for place in places)
     found = [function(*arguments[place]) for place in places]
     axes = tuple(one.id for one in choices)
@@ -143,6 +143,6 @@ def sweep(
     }
 
 
-def _tried(count):
+def _tried(choices, count):
     """Return the places of the combinations to compute: all but in a test that repeats a part."""
     return range(count)

@@ -136,7 +136,8 @@ def _right(claim, evidence):
 def _wrong(claim, evidence):
     """Return numbers that are off by little more than they may be, each entry by itself."""
     if claim.form == "size":
-        return [1.01 * FACTOR * _ends(evidence)[1], FAR]
+        most = _ends(evidence)[1]
+        return [1.01 * FACTOR * most, FAR] if most else [FAR]  # no factor leads away from zero
     if claim.form == "relation":
         low, high, _ = _ends(evidence)
         return (
