@@ -12,14 +12,13 @@ rounding: back and forth before the ring with the acceleration that the tracker 
 
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import peers
+from measuring import SCENARIO
 
 from dopplerlib import Scenario, constant_velocity, doppler_shift, ekf
 
-SCENARIO = Path(__file__).parents[1] / "data" / "mittermaier2016" / "scenario.toml"
 CHUNK = 20_000
 CENTER, AMPLITUDE = np.array([0.6, 0.0, 0.0]), 0.2  # m
 

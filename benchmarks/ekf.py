@@ -10,21 +10,26 @@ import sys
 import tempfile
 import time
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import peers
 import peers_c
 import peers_jax
-from measuring import ROUNDS, interleaved, processor_time, progress, save
+from measuring import (
+    AGREEMENT,
+    ROUNDS,
+    SCENARIO,
+    interleaved,
+    processor_time,
+    progress,
+    save,
+)
 
 from dopplerlib import Scenario, constant_velocity, ekf, simulate
 from dopplerlib.model.motion import dwna_gain
 
-SCENARIO = Path(__file__).parents[1] / "data" / "mittermaier2016" / "scenario.toml"
-RUNS = 1008  # a multiple of the lanes in C
+RUNS = 63 * peers_c.LANES
 FEW = 2  # runs of those that filter one after the other; their time is multiplied
-AGREEMENT = 1e-8
 EVERYTHING = "P", "innovation", "S"
 INEXACT = "Stone Soup, numerical"
 PACKAGES = "numpy numba sympy filterpy stonesoup dynamax cuthbert jax jaxlib".split()

@@ -9,17 +9,13 @@ scatter about the line.
 
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-from measuring import interleaved, save
+from measuring import SCENARIO, interleaved, save
 from scipy.stats import linregress, t
 
 from dopplerlib import RadarArray, Scenario, ekf, ml_initialize, simulate
 
-SCENARIO = Scenario.from_toml(
-    Path(__file__).parents[1] / "data" / "mittermaier2016" / "scenario.toml"
-)
 RUNS = 1, 16, 48, 160, 480, 1600, 4800, 10_000  # sixteen go side by side: others make stairs
 STEPS = 1, 10, 30, 100, 300, 1000, 3000, 10_000, 30_000, 100_000
 SENSORS = 3, 4, 6, 8, 12, 16, 24, 32, 48
@@ -76,7 +72,7 @@ def exponent(sizes, seconds, constant):
 def records(runs, steps, sensors):
     """Return the scenario of a second with so many steps and sensors, and its measurements."""
     array = RadarArray.ring(sensors, 0.2)
-    scenario = replace(SCENARIO, array=array, T=1 / steps, samples=steps)
+    scenario = replace(Scenario.from_toml(SCENARIO), array=array, T=1 / steps, samples=steps)
     return scenario, simulate(scenario, runs, rng=np.random.default_rng(1))[1]
 
 

@@ -18,14 +18,14 @@ from typing import ClassVar
 
 import numpy as np
 import peers_c
-from ekf import RUNS, SCENARIO, ours
-from measuring import interleaved, save
+from measuring import SCENARIO, interleaved, save
 
-from dopplerlib import Scenario, simulate
+from dopplerlib import Scenario, ekf, simulate
 from dopplerlib.derive import ekf as derive
 from dopplerlib.derive.operations import KINDS, count_operations
 from dopplerlib.derive.printers import python_function
 
+RUNS = 63 * peers_c.LANES
 CHAINS, TIMES, STEPS = 12, 2_000_000, 40
 FACTOR = 1.0 + 1e-9
 WRITTEN = 8 * (6 + 1) + 1  # bytes of a step and run: x, NIS, whether there was an update
@@ -109,15 +109,16 @@ def main():
     save("limit", found, ("numpy", "numba", "sympy"))
 
 
-def filters(scenario):
+def filters(s):
     """Return {(kind, name): (call, its repetitions in a round, steps that it filters)}."""
-    z = np.ascontiguousarray(simulate(scenario, RUNS, rng=np.random.default_rng(2016))[1])
-    sensors, keep_nothing, tasks = z.shape[-1], ours(scenario, scenario.x0, ()), {}
+    z = np.ascontiguousarray(simulate(s, RUNS, rng=np.random.default_rng(2016))[1])
+    sensors, tasks = z.shape[-1], {}
+    setting = s.array, s.x0, s.P0, s.T, s.sigma_a, s.sigma_f
     for kind, records, lanes, repetitions in (
         ("one run", z[:1], 1, 20),
         ("many runs", z, peers_c.LANES, 1),
     ):
-        peer = peers_c.Filters(scenario, scenario.x0, lanes)
+        peer = peers_c.Filters(s, s.x0, lanes)
         steps = records.size // sensors
         # A copy reads z and writes it; a step reads z and writes its results.
         copied = steps * 2 / (1 + WRITTEN / (8 * sensors))
@@ -126,7 +127,7 @@ def filters(scenario):
             ("bound by memory", np.copy, records, copied),
             ("C", peer.in_c("C"), records, steps),
             ("dopplerlib, its loop alone", peer.loop, records, steps),
-            ("dopplerlib", keep_nothing, own, steps),
+            ("dopplerlib", lambda z: ekf(z, *setting, keep=(), workers=1), own, steps),
         ):
             tasks[kind, name] = partial(run, argument), repetitions, done
     return tasks

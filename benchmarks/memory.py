@@ -15,11 +15,10 @@ from pathlib import Path
 
 import numpy as np
 import peers
-from measuring import progress, save
+from measuring import SCENARIO, progress, save
 
 from dopplerlib import Scenario, constant_velocity, ekf, simulate
 
-SCENARIO = Path(__file__).parents[1] / "data" / "mittermaier2016" / "scenario.toml"
 EVERYTHING = ("P", "innovation", "S")
 RUNS = {"one run": 1, "a thousand runs": 1000}
 KEPT = {"dopplerlib, x and NIS": (), "dopplerlib, everything": EVERYTHING}

@@ -10,9 +10,8 @@ import time
 
 import numpy as np
 import peers
-from ekf import AGREEMENT, SCENARIO
 from filterpy.kalman import ExtendedKalmanFilter
-from measuring import interleaved, load, progress, spread
+from measuring import AGREEMENT, SCENARIO, interleaved, load, progress, spread
 
 from dopplerlib import (
     Scenario,
