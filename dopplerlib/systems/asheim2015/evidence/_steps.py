@@ -1,6 +1,7 @@
 """Evidence on decisions of the thesis: order of the steps, sequential filter, gate, baseline."""
 
 from dataclasses import replace
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -89,15 +90,15 @@ def _sequential(runs, rng):
 
     worlds, noises = product_of("track", "settings"), product_of("rate-noise", "angle-noise")
     own, resampled = rng.spawn(2)
-    seen = {
-        world: filtered_in_the_plane(runs, *world, noises, child)
-        for world, child in zip(worlds, own.spawn(len(worlds)), strict=True)
-    }
+    children = dict(zip(worlds, own.spawn(len(worlds)), strict=True))
+
+    @cache
+    def seen(*world):
+        return filtered_in_the_plane(runs, *world, noises, children[world])
 
     def compared(child, track, settings, rate, angle, metric, tracker="ideal"):
-        of_noise = noises.index((rate, angle))
-        errors = {name: e[of_noise] for name, e in seen[track, settings].items()}
-        return ratio(errors["sequential"], errors[tracker], metric, child)
+        of_noise, errors = noises.index((rate, angle)), seen(track, settings)
+        return ratio(errors("sequential")[of_noise], errors(tracker)[of_noise], metric, child)
 
     axes = choices("track", "settings", "rate-noise", "angle-noise", "metric")
     return {
@@ -107,15 +108,17 @@ def _sequential(runs, rng):
 
 
 def filtered_in_the_plane(runs, track, settings, noises, rng):
-    """Return position errors of four filters of one radar that measures range, angle and rate.
+    """Return a function that gives position errors of a filter of one radar, by its name.
+
+    The radar measures range, angle and rate.
 
     runs: Number of records.
     track, settings: One of `TRACKS`; whose process noise.
     noises: Standard deviations of rate and angle in m/s and rad; that of a range is the thesis's.
     rng: Source of the noise.
-    Returns (M, runs, K): In m: the sequential filter of Table 3.3, the extended one without the
-        rate and with it all at once, and the ideal one, which has its derivatives at the true
-        state.
+    Returns (M, runs, K): In m, of "sequential", the filter of Table 3.3, of the extended one
+        "without the rate" and "with the rate, all at once", and of the "ideal" one, which has its
+        derivatives at the true state.
     """
     T, s = reported().scenario.tracks.T, reported().scenario
     time = scan_times()[round(FROM / T) : round(TO / T) + 1]
@@ -129,7 +132,12 @@ def filtered_in_the_plane(runs, track, settings, noises, rng):
     P0 = np.broadcast_to(s.cartesian.start_covariance * np.eye(4), (*batch, 4, 4))
     x0 = truth[0] + np.sqrt(s.cartesian.start_covariance) * rng.standard_normal((*batch, 4))
 
-    def filtered(name, m):
+    names = {"sequential": 2, "without the rate": 2, "with the rate, all at once": 3, "ideal": 3}
+
+    @cache
+    def filtered(name):
+        m = names[name]
+
         def step(k, state):
             x, P = gaussian.predict(*state, F, Q)
             at = truth[k] if name == "ideal" else x
@@ -143,8 +151,7 @@ def filtered_in_the_plane(runs, track, settings, noises, rng):
         (x,) = recursion.scan(step, (x0, P0), range(1, len(time)), axis=2)
         return position_errors(x[..., :2], truth[1:])
 
-    names = {"sequential": 2, "without the rate": 2, "with the rate, all at once": 3, "ideal": 3}
-    return {name: filtered(name, m) for name, m in names.items()}
+    return filtered
 
 
 def h(x):

@@ -1,5 +1,6 @@
 """Evidence on Chapter 6 from SIMULATED walks: its recordings are not published."""
 
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,18 +24,20 @@ def found(records, tracks, runs, rng):
     """
     both, alone, resampled = rng.spawn(3)
     (variant,) = choices("variant")
-    walks = {
-        name: _walks(runs, name, child)
-        for name, child in zip(variant.values, both.spawn(len(variant.values)), strict=True)
-    }
+    children = dict(zip(variant.values, both.spawn(len(variant.values)), strict=True))
+
+    @cache
+    def walks(variant):
+        return _walks(runs, variant, children[variant])
+
     simulated = _simulated(records, tracks)
 
     def mean(variant, path, low, high):
-        w = walks[variant]
+        w = walks(variant)
         return Draws(_rms(getattr(w, path), w.before & (w.y >= low) & (w.y <= high)))
 
     def worse(child, variant):
-        w = walks[variant]
+        w = walks(variant)
         real = _rms(w.estimated, w.before & (w.y > 4))
         n = min(len(real), len(simulated))
         return bootstrap_interval(
@@ -42,27 +45,27 @@ def found(records, tracks, runs, rng):
         )
 
     def raw_near(variant, how):
-        w = walks[variant]
+        w = walks(variant)
         at = w.before & (w.y >= 2) & (w.y <= 3)
         if how == "root mean square":
             return Draws(_rms(w.measured, at))
         return Draws(np.nanmax(w.measured[:, at], axis=1))
 
     return {
-        "reacquired": sweep(choices("variant"), lambda variant: Draws(walks[variant].again)),
+        "reacquired": sweep(choices("variant"), lambda variant: Draws(walks(variant).again)),
         "gate-walk": _gate_on_a_walk(runs // 4, alone),
         "error-near": sweep(choices("variant"), lambda v: mean(v, "estimated", 0, 2.4)),
         "raw-near": sweep(choices("variant", "read-off"), raw_near),
         "raw-worst": sweep(
             choices("variant"),
-            lambda v: Draws(np.nanmax(walks[v].measured[:, walks[v].before], axis=1)),
+            lambda v: Draws(np.nanmax(walks(v).measured[:, walks(v).before], axis=1)),
         ),
         "error-at-four": sweep(
             choices("variant", "at-four"), lambda v, half: mean(v, "estimated", 4 - half, 4 + half)
         ),
         "real-worse": sweep(choices("variant"), worse, resampled),
         "nearest-of-validated": sweep(
-            choices("variant"), lambda variant: proportion_interval(walks[variant].dropped)
+            choices("variant"), lambda variant: proportion_interval(walks(variant).dropped)
         ),
     }
 
