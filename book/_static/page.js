@@ -46,6 +46,18 @@ addEventListener("load", () =>
   }),
 );
 
+// In a table that is wider than the page, an interval stands below its value: `<wbr>` is between.
+addEventListener("DOMContentLoaded", () => {
+  const watch = new ResizeObserver((changes) => {
+    for (const { target: box } of changes) {
+      const table = box.querySelector("table.results");
+      table.classList.remove("narrow");
+      table.classList.toggle("narrow", box.scrollWidth > box.clientWidth);
+    }
+  });
+  for (const box of document.querySelectorAll(".output:has(> table.results)")) watch.observe(box);
+});
+
 // A scorecard: the number of each verdict, buttons that leave rows out, and what was tried folded.
 addEventListener("DOMContentLoaded", () => {
   for (const table of document.querySelectorAll(".bd-article table:has(td:first-child .verdict)")) {
