@@ -18,12 +18,11 @@ _PURE = (
 )
 
 
-def check_figures(module, figures, *, made_up=(), fine=()):
+def check_figures(module, figures, *, made_up=()):
     """Fail if a public function of the module has no figure, or one does not fit a page.
 
     `figures` has a figure by the name of each function. Nothing in it lies on a text; of those in
-    `made_up` the curves may run through the legend, since they are nobody's results, and those in
-    `fine` may have numbers in small cells.
+    `made_up` the curves may run through the legend, since they are nobody's results.
     """
     public = {
         name
@@ -36,7 +35,6 @@ def check_figures(module, figures, *, made_up=(), fine=()):
         figure.draw_without_rendering()
         assert overlaps(figure) == [], name
         assert (covered(figure) != []) == (name in made_up), name
-        assert (small(figure) != []) == (name in fine), name
     assert plt.get_fignums() == []
 
 
@@ -60,7 +58,11 @@ def _texts(figure):
 
 def small(figure):
     """Return the texts that a reader has to come closer for."""
-    return [text.get_text() for text, _ in _texts(figure) if text.get_fontsize() < SMALLEST]
+    return [
+        text.get_text()
+        for text in figure.findobj(Text)
+        if text.get_text().strip() and text.get_visible() and text.get_fontsize() < SMALLEST
+    ]
 
 
 def overlaps(figure):

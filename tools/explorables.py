@@ -33,6 +33,7 @@ from dopplerlib.model.motion import dwna_gain
 from dopplerlib.systems import asheim2015 as thesis
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems import sombatsatien as student
+from dopplerlib.systems.mittermaier2016.readings import combinations
 from dopplerlib.systems.sombatsatien.descent import local_start
 from dopplerlib.systems.sombatsatien.variants import LONG
 from dopplerlib.workspace.stop_study import LABELS, THRESHOLDS, saved_stops
@@ -77,6 +78,21 @@ def _hero():
         "within": RULES["within 0.3 s"][0],
         "threshold": 0.5,
         "normal": _normal(POINTS).T.tolist(),
+    }
+
+
+def _combinations():
+    """Return what a study saved of every combination of causes."""
+    saved = combinations.saved_combinations()
+    return {
+        "switches": combinations.SWITCHES,
+        "moments": combinations.MOMENTS,
+        "runs": 1000,
+        "middle": chi2.median(6),
+        "rows": {
+            ",".join(key): {name: medians.tolist() for name, medians in row.items()}
+            for key, row in saved.items()
+        },
     }
 
 
@@ -261,6 +277,7 @@ def _by_lead(lead):
 
 SETTINGS = {
     "hero": _hero,
+    "combinations": _combinations,
     "repairs": _repairs,
     "shifts": _shifts,
     "blind": _blind,

@@ -1,6 +1,7 @@
 """Figures of the chapter on SIMULATED recordings of real radars; each title says so."""
 
 from collections.abc import Sequence
+from itertools import cycle
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -10,6 +11,7 @@ from ..tracking.multi_target import ManagedTrack
 from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, TRUTH, drawing
 
 _LABEL = "SIMULATED"
+_TRACKS = ((OURS, "."), (ORANGE, "x"), (SENSOR, "^"), (TRUTH, "+"))
 
 
 @drawing(7.0, 3.4)
@@ -87,7 +89,7 @@ def coasting(
         ax.axvspan(*gap, color=BOUND, alpha=0.15, lw=0)
         ax.plot(time, d.T, color=OURS, lw=0.6, alpha=0.5)
         ax.plot([], [], color=OURS, lw=0.8, label=f"filtered, {len(d)} walks")
-        ax.plot(time, true, color=ORANGE, ls="--", lw=2, label="true")
+        ax.plot(time, true, color=TRUTH, ls="--", lw=2, label="true")
         ax.set(title=f"{_LABEL}: {title}", xlabel="time (s)", ylim=(0, 12))
         ax.legend(loc="upper left")
     axes[0].set_ylabel("range (m)")
@@ -119,16 +121,14 @@ def managed(
                 mec=MEASURED, ms=4, label="detections")  # fmt: skip
         ax.plot(time, truth, color=TRUTH, ls="--", label="true")
         ax.set(xlabel="time (s)", ylim=(0.5, 6.5))
-    for i, (track, color) in enumerate(
-        zip(tracks, (OURS, ORANGE, SENSOR, PINK) * len(tracks), strict=False)
-    ):
-        left.plot(time[track.scan], track.x[:, 0], color=color, marker=".", ms=4,
-                  label="confirmed tracks" if i == 0 else None)  # fmt: skip
-    right.plot(time, alternative, color=OURS, marker=".", ms=4, label="PDA")
+    for i, (track, (color, marker)) in enumerate(zip(tracks, cycle(_TRACKS), strict=False), 1):
+        left.plot(time[track.scan], track.x[:, 0], color=color, marker=marker, ms=4,
+                  markevery=2, label=f"track {i}")  # fmt: skip
+    right.plot(time, alternative, color=PINK, marker=".", ms=4, label="PDA")
     left.set(title=f"{_LABEL}: managed tracks", ylabel="range (m)")
     right.set_title(f"{_LABEL}: one track, PDA")
     entries = {}
     for ax in (left, right):
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
-    figure.legend(entries.values(), entries, loc="outside lower center", ncols=4, fontsize=8.5)
+    figure.legend(entries.values(), entries, loc="outside lower center", ncols=6, fontsize=8.5)

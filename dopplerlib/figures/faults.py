@@ -3,9 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from .style import drawing
-
-_DARK = 60  # percent from which on numbers are white
+from .style import drawing, ink
 
 
 @drawing(7.0, 7.4)
@@ -24,8 +22,8 @@ def fault_map(figure: Figure, fractions: dict[str, dict[str, float]], quantity: 
     ax.grid(False)
     for (i, j), percent in np.ndenumerate(value):
         if np.isfinite(percent):
-            color = "white" if percent > _DARK else "black"
-            ax.annotate(f"{percent:.0f}", (j, i), ha="center", va="center", color=color, size=7)
+            color = ink(image.cmap(image.norm(percent)))
+            ax.annotate(f"{percent:.0f}", (j, i), ha="center", va="center", color=color, size=8)
     ax.set_xticks(range(len(trackers)), trackers, rotation=45, ha="left", rotation_mode="anchor")
     ax.set_yticks(range(len(faults)), faults)
     ax.tick_params(top=True, bottom=False, labeltop=True, labelbottom=False, length=0)

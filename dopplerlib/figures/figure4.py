@@ -42,7 +42,7 @@ def mean_and_median(
     """Draw errors divided by the standard deviation of the noise: flat where the problem is linear.
 
     results (L, D): Position errors in m by label: the mean and the median over the grid.
-    bound (L,): Mean position error at the bound, in m.
+    bound (L,): Mean position error at the bound, in m, of the first of `results`.
     variance (L,): Of the noise, in Hz^2.
     """
     sigma_f = np.sqrt(variance)
@@ -51,11 +51,11 @@ def mean_and_median(
         for values, style, name in zip(pair, ("-", ":"), ("mean", "median"), strict=True):
             ax.plot(variance, values.mean(axis=1) / sigma_f, style, color=color, marker="o",
                     ms=3, label=f"{label}: {name}")  # fmt: skip
-    ax.plot(variance, bound / sigma_f, "--", color=BOUND, label="at the CRLB, the first")
+    ax.plot(variance, bound / sigma_f, "--", color=BOUND, label="mean at the CRLB")
     ax.set(xscale="log", xlabel="variance of the noise (Hz²)",
            ylabel="position error / $\\sigma_f$ (m/Hz)")  # fmt: skip
     ax.set_ylim(bottom=0)
-    figure.legend(loc="outside right upper")
+    figure.legend(loc="outside upper center", ncols=3)
 
 
 @drawing(7, 3.6)
@@ -71,4 +71,4 @@ def sequences(figure: Figure, sets: dict[str, tuple[Array, Array]]) -> None:
         ax.plot(*pair, marker, color=color, ms=5, label=label)
     ax.set(xlabel="position error / $\\sigma_f$ (m/Hz)",
            ylabel="velocity error / $\\sigma_f$ (m/s/Hz)")  # fmt: skip
-    figure.legend(loc="outside right upper")
+    figure.legend(loc="outside upper center", ncols=3)

@@ -28,18 +28,30 @@ from .style import (
 
 @drawing(7, 3.6)
 def doppler_curves(
-    figure: Figure, time: Array, shifts: Array, names: Sequence[str] | None = None
+    figure: Figure,
+    time: Array,
+    shifts: Array,
+    names: Sequence[str] | None = None,
+    close: tuple[float, float] | None = None,
 ) -> None:
     """Draw the Doppler shift at each sensor over time.
 
     time (K,): Times in s.
     shifts (K, N): Doppler shifts in Hz.
     names: Labels of the sensors; their numbers, from 1, if None.
+    close: Times in s of a second panel, which has the labels: for curves that meet at their ends.
     """
-    ax = figure.subplots()
-    doppler_lines(ax, time, shifts, names)
+    *whole, ax = figure.subplots(1, 1 if close is None else 2, squeeze=False)[0]
+    inside = slice(None) if close is None else slice(*np.searchsorted(time, close))
+    doppler_lines(ax, time[inside], shifts[inside], names)
+    for left in whole:
+        for curve, color in zip(shifts.T, sensor_colors(shifts.shape[-1]), strict=True):
+            left.plot(time, curve, color=color)
+        left.axvspan(*close, color=BOUND, alpha=0.15, lw=0)
+        left.set(xlabel="time (s)", ylabel="Doppler shift (Hz)", xlim=(time[0], time[-1]))
     if shifts.min() < 0 < shifts.max():
-        ax.axhline(0, color=BOUND, lw=0.8)
+        for each in figure.axes:
+            each.axhline(0, color=BOUND, lw=0.8)
 
 
 @drawing(7, 3.4)

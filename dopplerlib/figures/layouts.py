@@ -10,7 +10,7 @@ from .._hints import Array
 from ..evaluation.intervals import ConfidenceInterval
 from ..model.radar_array import RadarArray
 from ..workspace.layout_results import TIMES, LayoutErrors
-from .style import BOUND, LABEL, ORANGE, OURS, PINK, SENSOR, TRUTH, drawing, plain_log_ticks
+from .style import BOUND, LABEL, ORANGE, OURS, PINK, SENSOR, TRUTH, drawing, ink, plain_log_ticks
 
 _MARKS = (
     (BOUND, "o", "-"), (OURS, "s", "--"), (PINK, "v", "-."), (ORANGE, "D", ":"),
@@ -143,9 +143,8 @@ def maps(
             value = factor * np.asarray(value)
             area = ax.pcolormesh(x, y, value, vmin=0, vmax=top, cmap=colors, shading="nearest")
             for (j, i), one in np.ndenumerate(value):
-                dark = (one < 0.6 * top) == (colors == "viridis")
-                ax.text(x[i], y[j], text.format(one), ha="center", va="center", fontsize=6,
-                        color="white" if dark else "black")  # fmt: skip
+                ax.text(x[i], y[j], text.format(one), ha="center", va="center", fontsize=8,
+                        color=ink(area.cmap(area.norm(one))))  # fmt: skip
             ax.grid(False)
             if values is bound:
                 ax.set_title(fill(name, 17), fontsize=9)

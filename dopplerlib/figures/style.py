@@ -82,6 +82,17 @@ def sensor_colors(n):
     return [_SHADES[i * len(_SHADES) // n] for i in range(n)]
 
 
+def ink(color):
+    """Return "black" or "white", whichever stands out more from a color (red, green, blue, ...).
+
+    The contrast of WCAG 2.1, (bright + 0.05) / (dark + 0.05), is the same for both at the relative
+    luminance sqrt(1.05 * 0.05) - 0.05.
+    """
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color[:3]]
+    luminance = np.dot(linear, [0.2126, 0.7152, 0.0722])
+    return "black" if luminance > np.sqrt(1.05 * 0.05) - 0.05 else "white"
+
+
 def project(points, azimuth, elevation):
     """Return the orthographic view of `points`, shape (..., 3), as (..., 2): right and up.
 

@@ -17,6 +17,7 @@ PAGES = CHAPTERS + sorted(
 )
 LONGEST_CELL = 15  # lines: what does not fit belongs in the library
 LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
+HUE = re.compile(r"\b(?:blue|orange|green|red|pink|purple|gr[ae]y|yellow|brown|black)\b", re.I)
 PICTURE = re.compile(r"^(`{3,}|:{3,})\{(?:glue:)?(?:figure|image)\}(.*?)^\1", re.M | re.S)
 
 
@@ -96,6 +97,22 @@ def test_every_picture_in_the_prose_has_a_text_too(path):
     text = prose(path)
     assert "![](" not in text
     assert [m[0] for m in PICTURE.finditer(text) if ":alt:" not in m[2]] == []
+
+
+@pytest.mark.parametrize("path", PAGES, ids=name)
+def test_no_sentence_needs_an_eye_for_colors(path):
+    """A line is told by its dashes, a mark by its form: one reader in twenty sees few hues."""
+    captions = [
+        cell.metadata.get("mystnb", {}).get("figure", {}).get("caption", "")
+        for _, cell in (code_cells(path) if path in CHAPTERS else ())
+    ]
+    seen = [
+        text
+        for line in prose(path).splitlines()
+        if not line.startswith(":alt:")
+        for text in HUE.findall(line)
+    ]
+    assert seen + HUE.findall(" ".join(captions)) == []
 
 
 @pytest.mark.parametrize("path", CHAPTERS, ids=name)

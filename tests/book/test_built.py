@@ -79,3 +79,14 @@ def test_exercises_go_from_paper_to_the_computer_to_a_project(pages):
     grades = {page: [GRADES.index(g) for g in GRADE.findall(text)] for page, text in pages.items()}
     assert {page: found for page, found in grades.items() if found != sorted(found)} == {}
     assert sum(2 in found for found in grades.values()) >= 12
+
+
+def test_no_link_has_the_name_of_a_file_for_its_text(pages):
+    """Of a page that has a longer title: "tour" leads to "A tour in ten minutes"."""
+    names = {name.removesuffix(".html").replace("_", " ") for name in pages if "/" not in name}
+    links = {
+        (page, words)
+        for page, text in pages.items()
+        for words in re.findall(r'<a href="\w+\.html#cell-[^>]*>([^<]+)</a>', text)
+    }
+    assert {(page, words) for page, words in links if words in names} == set()

@@ -43,3 +43,22 @@ def test_a_page_that_is_no_notebook_is_left_alone(extension, tmp_path):
     code = nodes.container(nb_element="cell_code", cell_index=0)
     extension._add_anchors(app_for(tmp_path / "page.md"), nodes.container("", code))
     assert code["ids"] == []
+
+
+def test_a_link_to_a_cell_names_the_chapter_not_its_file(extension):
+    titles = {"asheim_two": nodes.title("", "Two radars"), "harvest": nodes.title("", "A & B")}
+    env = SimpleNamespace(titles=titles, toc_secnumbers={"asheim_two": {"": (18,)}})
+    links = (
+        '<a href="asheim_two.html#cell-area">asheim two</a>',
+        '<a href="asheim_two.html#cell-judged">number</a>',
+        '<a href="harvest.html#cell-one">harvest</a>',
+    )
+    context = {"body": " ".join(links)}
+    extension._name_chapters(SimpleNamespace(env=env), "page", "", context, None)
+    assert context["body"] == " ".join(
+        (
+            '<a href="asheim_two.html#cell-area" title="Two radars">chapter 18</a>',
+            '<a href="asheim_two.html#cell-judged" title="Two radars">number</a>',
+            '<a href="harvest.html#cell-one" title="A &amp; B">A &amp; B</a>',
+        )
+    )

@@ -27,6 +27,7 @@ from dopplerlib.signal import laws
 from dopplerlib.systems import asheim2015 as thesis
 from dopplerlib.systems import mittermaier2016 as paper
 from dopplerlib.systems import sombatsatien as student
+from dopplerlib.systems.mittermaier2016.readings.combinations import SWITCHES
 from dopplerlib.tracking.bilateration import bilaterate
 from dopplerlib.workspace.stop_study import saved_stops
 from dopplerlib.workspace.stopping import RADIUS
@@ -266,6 +267,24 @@ def test_the_first_page_decides_like_the_library():
     found = collision_probability(x, P, RADIUS, settings["within"], points=points)
     assert chances == found.tolist()
     assert min(chances) < 0.1 < 0.5 < max(chances)
+
+
+@needs_node
+def test_the_combinations_shown_are_those_of_the_saved_study():
+    places = {"P0": 0, "noise": 1, "start": 2, "world": 3}
+    saved = paper.saved_combinations()
+    states = [
+        {name: key[i] == SWITCHES[name][1] for name, i in places.items()} | {"place": place}
+        for key in saved
+        for place in (0, 6, 11)
+    ]
+    found = iter(measured("combinations", *states))
+    for key, row in saved.items():
+        for place in (0, 6, 11):
+            numbers = next(found)
+            assert numbers["key"] == list(key)
+            assert numbers["nees"] == row["nees"][place].tolist()
+            assert numbers["nis"] == row["nis"][place].tolist()
 
 
 REPAIRED = {"sign": True, "ring": True, "start": "global, of 0.1 s"}

@@ -1,9 +1,9 @@
-"""Every figure that a test draws has its units, and none stays with pyplot."""
+"""Every figure that a test draws has units and letters of a size, and none stays with pyplot."""
 
 import matplotlib.pyplot as plt
 import pytest
 
-from tests.drawn import check_labels
+from tests.drawn import check_labels, small
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -21,3 +21,4 @@ def drawn():
     assert plt.get_fignums() == []
     for each in figures:
         check_labels(each)
+        assert small(each) == []

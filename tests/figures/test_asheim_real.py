@@ -38,9 +38,11 @@ def test_a_record_shows_what_it_has(figures):
     assert len(second["detections"].get_xdata()) == 150
 
 
-def test_managed_tracks_stand_at_their_scans_and_are_named_once(figures):
+def test_managed_tracks_stand_at_their_scans_and_each_has_its_mark(figures):
     left, _ = figures["managed"].axes
-    assert lines(left)["confirmed tracks"].get_xydata().tolist() == [[0, 1], [1, 1], [2, 1]]
+    tracks = [lines(left)[f"track {i}"] for i in (1, 2)]
+    assert tracks[0].get_xydata().tolist() == [[0, 1], [1, 1], [2, 1]]
+    assert tracks[0].get_marker() != tracks[1].get_marker()
     assert len(left.lines) == 4
 
 

@@ -28,6 +28,14 @@ def test_the_doppler_curves_show_every_sensors_shift_under_its_number():
     assert ax.get_ylabel() == "Doppler shift (Hz)"
 
 
+def test_curves_that_meet_at_their_ends_are_labeled_where_they_part():
+    shifts = doppler_shift(SCENARIO.truth, RING)
+    whole, close = draw.doppler_curves(SCENARIO.time, shifts, close=(0.25, 0.5)).axes
+    assert [len(line.get_xdata()) for line in whole.lines] == [len(shifts)] * 6
+    assert [len(line.get_xdata()) for line in close.lines] == [250] * 6
+    assert len(close.texts) == 6 and not whole.texts
+
+
 def test_the_two_frames_show_the_shifts_and_opposite_velocities():
     platform, target = draw.two_sensors(PAIR, FLAT).axes
     written = {text.get_text() for text in target.texts}

@@ -36,7 +36,7 @@ def figures():
 
 
 def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures, fine=["maps"])
+    check_figures(draw, figures)
 
 
 def test_every_axis_says_its_unit(figures):

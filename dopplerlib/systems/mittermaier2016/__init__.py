@@ -20,6 +20,7 @@ _HOME = by_name(
         "chain_sums": "saved_sum_errors sum_errors",
         "simulated_iq": "SIMULATED read_simulated_iq simulated_recording write_simulated_iq",
         "readings.ablation": "Consistency ablated_ekf consistency_runs matched_P0 range_claims",
+        "readings.combinations": "combination_runs saved_combinations",
         "readings.faults": "faulty_filters linear_filter linear_world",
         "readings.maps": "ORIENTATIONS MapReading map_readings map_score",
         "readings.noise_sweep": "DotsStructure dots_log_likelihood dots_structure saved_noise_sweep"

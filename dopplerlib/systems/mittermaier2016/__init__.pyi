@@ -46,6 +46,8 @@ from .readings.ablation import ablated_ekf as ablated_ekf
 from .readings.ablation import consistency_runs as consistency_runs
 from .readings.ablation import matched_P0 as matched_P0
 from .readings.ablation import range_claims as range_claims
+from .readings.combinations import combination_runs as combination_runs
+from .readings.combinations import saved_combinations as saved_combinations
 from .readings.example import ExampleReadings as ExampleReadings
 from .readings.example import example_readings as example_readings
 from .readings.example import example_summary as example_summary
@@ -94,6 +96,7 @@ __all__ = [
     "SweepReading",
     "TrackErrors",
     "ablated_ekf",
+    "combination_runs",
     "comparable",
     "consistency_runs",
     "dots_log_likelihood",
@@ -124,6 +127,7 @@ __all__ = [
     "run_example",
     "run_noise_sweep",
     "samples_needed",
+    "saved_combinations",
     "saved_noise_sweep",
     "saved_sum_errors",
     "saved_sweep_readings",
