@@ -23,7 +23,7 @@ PREPARED.enter_context(own_profile())
 SETTINGS = Path(os.environ["IPYTHONDIR"]) / "profile_default" / "ipython_config.py"
 SETTINGS.parent.mkdir()
 figures = {"bbox_inches": None, "dpi": 80}
-if sys.platform == "linux":  # a copied kernel finds `tools`
+if sys.platform == "linux":  # a copied kernel holds this one of the tools
     figures["backend"] = "module://tools.unpainted"
 SETTINGS.write_text(f"c.InlineBackend.print_figure_kwargs = {figures}\n")
 # Their kernels are copies of one process, where processes can be copied.

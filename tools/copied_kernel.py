@@ -24,6 +24,7 @@ from tools.command import parser
 
 ROOT = Path(__file__).resolve().parent.parent
 POLL, PATIENCE = 0.01, 30.0  # seconds
+KEPT = "tools.unpainted"  # of the tools, what Matplotlib looks up in a kernel by its name
 
 
 class Process:
@@ -103,7 +104,7 @@ def prepare():
     """Import what chapters import, and call what is compiled."""
     # As a kernel does before its first cell; Matplotlib reads it when it is imported.
     os.environ.setdefault("MPLBACKEND", "module://matplotlib_inline.backend_inline")
-    for name in ("ipykernel.kernelapp", "matplotlib.pyplot", "sympy"):
+    for name in ("ipykernel.kernelapp", "matplotlib.pyplot", "sympy", KEPT):
         import_module(name)
     import dopplerlib
     from tools.compile import main as compile_all
@@ -163,7 +164,8 @@ def main(argv=None):
     prepare()
     sys.path.remove(str(ROOT))  # a chapter has the library, not what tests it
     for name in [name for name in sys.modules if name.partition(".")[0] == "tools"]:
-        del sys.modules[name]
+        if name != KEPT:
+            del sys.modules[name]
     for line in sys.stdin:
         print(json.dumps(answer(json.loads(line))), flush=True)
 

@@ -54,6 +54,14 @@ def test_a_kernel_finds_the_modules_that_any_other_finds(tmp_path):
         assert run(code) == alone.stdout
 
 
+def test_a_kernel_lays_figures_out_without_the_folder_of_the_tools(tmp_path):
+    with started(tmp_path) as (_, run):
+        save = "savefig('x.png', backend='module://tools.unpainted')"
+        code = f"import matplotlib.pyplot as plt; plt.plot([1, 2]); plt.{save}; print(6 * 7)"
+        assert run(code).startswith("42\n")
+        assert run("import tools") == "ModuleNotFoundError"
+
+
 def test_a_kernel_is_interrupted_alone(tmp_path):
     with started(tmp_path) as (manager, run):
         beep = "import os, signal; os.killpg(0, signal.SIGINT); import time; time.sleep(60)"
