@@ -38,6 +38,7 @@ from dopplerlib.systems.sombatsatien.descent import local_start
 from dopplerlib.systems.sombatsatien.variants import LONG
 from dopplerlib.workspace.stop_study import LABELS, THRESHOLDS, saved_stops
 from dopplerlib.workspace.stopping import RADIUS, RULES, judge_stops
+from studies.combinations import PARAMETERS
 from tools.command import parser, start
 
 FOLDER = Path(__file__).resolve().parent.parent / "book" / "_explorables"
@@ -87,7 +88,7 @@ def _combinations():
     return {
         "switches": combinations.SWITCHES,
         "moments": combinations.MOMENTS,
-        "runs": 1000,
+        "runs": PARAMETERS["runs"],
         "middle": chi2.median(6),
         "rows": {
             ",".join(key): {name: medians.tolist() for name, medians in row.items()}

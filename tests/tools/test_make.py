@@ -119,3 +119,12 @@ def test_a_name_becomes_the_file_of_the_chapter():
         check=True,
     )
     assert "tools.notebooks book/ekf.ipynb book/iq.ipynb\n" in made.stdout
+
+
+def test_the_readme_of_the_benchmarks_names_all_that_run():
+    folder = ROOT / "benchmarks"
+    told = set(
+        re.findall(r"^make bench NAME=(\w+) +#", (folder / "README.md").read_text("utf-8"), re.M)
+    )
+    runs = {path.stem for path in folder.glob("*.py") if "__main__" in path.read_text("utf-8")}
+    assert told >= runs
