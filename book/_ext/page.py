@@ -16,6 +16,11 @@ from docutils import nodes
 PICTURE = "hero.png"  # in `_static`: a hundred tracks, as the first page has them
 SCALE = 0.68  # px of a page for one of a figure: seven inches are as wide as the text
 LONGEST = 200  # characters of a description: what a search engine shows
+FORMULA = "\N{OBJECT REPLACEMENT CHARACTER}"  # which no search engine can show
+# "An estimate x of the state" can be read without x; "errors of x, y and z" or "x is small" cannot.
+NEEDED = re.compile(rf"^{FORMULA}|{FORMULA}(?:\W*$|[^\w\s]| (?:and|or|is|are|has|have)\b)")
+END = r"(?<! al)[.!?](?=\s|$)"  # of a sentence, but for "et al."
+SENTENCE = re.compile(rf".+?(?:{END}|$)")
 REPEATED = {"exercise-content", "solution-content"}
 CITE = {
     "type": "link",
@@ -36,19 +41,22 @@ ROLES = re.compile(r' role="(?:list|doc-biblioentry)"(?=[^>]*>)')
 
 
 def description(doctree):
-    """Return the first sentences of a page, as many as a description may have."""
+    """Return the first sentences of a page that can be read without their formulas."""
     for paragraph in doctree.findall(nodes.paragraph):
         if isinstance(paragraph.parent, nodes.section):
-            text = " ".join(_plain(paragraph).split())
-            whole = re.match(rf".{{1,{LONGEST}}}[.!?](?=\s|$)", text)
-            return whole[0] if whole else text[:LONGEST].rsplit(" ", 1)[0] + " …"
+            text = " ".join(_marked(paragraph).split())
+            kept = [s for s in SENTENCE.findall(text) if not NEEDED.search(s)]
+            text = " ".join(" ".join(kept).replace(FORMULA, "").split())
+            whole = re.match(rf".{{1,{LONGEST}}}{END}", text)
+            if text:
+                return whole[0] if whole else text[:LONGEST].rsplit(" ", 1)[0] + " …"
     return ""
 
 
-def _plain(paragraph):
-    """Return the text of a paragraph; a formula is no text to a search engine."""
+def _marked(paragraph):
+    """Return the text of a paragraph, with a mark where a formula was."""
     return "".join(
-        child.astext() for child in paragraph.children if not isinstance(child, nodes.math)
+        FORMULA if isinstance(child, nodes.math) else child.astext() for child in paragraph.children
     )
 
 

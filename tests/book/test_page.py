@@ -56,6 +56,11 @@ def test_a_description_ends_with_a_sentence_and_has_no_formula():
     text = page.description(section(box, first))
     assert text.startswith("A radar measures shifts. Nothing else.")
     assert text.endswith("else.") and len(text) <= page.LONGEST
+    needed = paragraph("The errors of ")
+    needed += [nodes.math("", "x"), nodes.Text(" and "), nodes.math("", "y"), nodes.Text(" fall.")]
+    assert page.description(section(needed, paragraph("They say how. B et al. do."))) == (
+        "They say how. B et al. do."
+    )
     assert page.description(section(paragraph("word " * 80))).endswith("word …")
     assert page.description(section(box)) == ""
 
@@ -80,11 +85,13 @@ def test_an_exercise_says_whether_it_takes_paper_a_computer_or_an_afternoon():
     tree = section(
         *(exercise("a"), solution_node("", paragraph("So."), target_label="a")),
         *(exercise("b"), solution_node("", section(cell), target_label="b")),
+        *(exercise("d", "hand"), solution_node("", section(cell.deepcopy()), target_label="d")),
         exercise("c", "project"),
     )
     exercises.grade(None, tree)
     texts = [node.astext() for node in tree.findall(nodes.paragraph) if "grade" in node["classes"]]
-    assert texts == [exercises.BY_HAND, exercises.COMPUTER, exercises.PROJECT]
+    hand, computer = exercises.BY_HAND, exercises.COMPUTER
+    assert texts == [hand, computer, hand, exercises.PROJECT]
 
 
 def test_a_head_that_is_empty_is_none_and_one_with_text_stays():
