@@ -1,6 +1,7 @@
 """Say below the title of an exercise what it takes: paper, a computer, or an afternoon.
 
-A solution with a code cell takes a computer; an exercise of class `project` is a small project.
+A solution with a code cell takes a computer, unless the exercise has the class `hand`: then the
+cell only confirms what paper gives. An exercise of class `project` is a small project.
 """
 
 from docutils import nodes
@@ -18,8 +19,8 @@ def grade(app, doctree):
     }
     for exercise in doctree.findall(exercise_enumerable_node):
         text = COMPUTER if exercise["label"] in computed else BY_HAND
-        if "project" in exercise["classes"]:
-            text = PROJECT
+        text = BY_HAND if "hand" in exercise["classes"] else text
+        text = PROJECT if "project" in exercise["classes"] else text
         content = exercise.next_node(nodes.section)
         content.insert(0, nodes.paragraph("", text, classes=["grade"]))
 
