@@ -22,14 +22,14 @@ explorables.combinations = (() => {
       return { key, nees: row.nees[state.place], nis: row.nis[state.place] };
     },
     draw({ switches, rows, moments, middle }, state, numbers, width) {
-      const wide = width >= 600, names = 158, half = wide ? Math.round(0.54 * width) : width;
+      const wide = width >= 600, names = 182, half = wide ? Math.round(0.54 * width) : width;
       const key = numbers.key.join(), { place } = state;
       const [curved, straight] = switches.world;
       const filters = [...new Set(Object.keys(rows).map((name) => name.slice(0, name.lastIndexOf(","))))];
       const left = draw.panel(
         { x: names, y: 54, width: half - names - 14, height: 26 * filters.length }, { ...SCALE, label: "median NEES" }, { from: 0, to: filters.length });
-      let shapes = draw.text([0, 14], "P0, noise, start") + draw.dot([names + 8, 9], 6, "published filled");
-      shapes += draw.text([names + 20, 14], "curved") + draw.box(names + 84, 3, 12, 12, "ours filled") + draw.text([names + 102, 14], "straight");
+      let shapes = draw.text([0, 14], "P0, noise, start") + draw.dot([128, 9], 6, "published filled");
+      shapes += draw.text([140, 14], "curved") + draw.box(204, 3, 12, 12, "ours filled") + draw.text([222, 14], "straight");
       shapes += left.frame();
       const right = left.to(middle, 0)[0];
       shapes += draw.line([right, left.top - 8], [right, left.bottom], "bound dashed") + draw.text([right, left.top - 13], "right: 5.3", "middle");
