@@ -18,7 +18,7 @@ gc.disable()  # until all is collected: a fifth of the time, for modules and tes
 # At once: other files of this kind import NumPy and Matplotlib.
 PREPARED = ExitStack()
 PREPARED.enter_context(own_profile())
-# The figures of chapters are laid out, once (a tight box is drawn twice), but their pixels would be
+# The figures of chapters are drawn, once (a tight box is drawn twice), but their pixels would be
 # compared with nothing.
 SETTINGS = Path(os.environ["IPYTHONDIR"]) / "profile_default" / "ipython_config.py"
 SETTINGS.parent.mkdir()

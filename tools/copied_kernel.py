@@ -7,6 +7,7 @@ no cell has run. `make chapter` and `make record` start every kernel on its own.
 
 import atexit
 import gc
+import io
 import json
 import os
 import pkgutil
@@ -16,6 +17,7 @@ import sys
 import time
 from contextlib import suppress
 from importlib import import_module
+from importlib.resources import as_file
 from pathlib import Path
 
 from jupyter_client.provisioning import LocalProvisioner
@@ -24,6 +26,11 @@ from tools.command import parser
 
 ROOT = Path(__file__).resolve().parent.parent
 POLL, PATIENCE = 0.01, 30.0  # seconds
+# Not the inline backend: it looks for its kernel when it is imported.
+IMPORTED = (
+    *("ipykernel.kernelapp", "ipykernel.debugger", "IPython.core.completerlib"),
+    *("IPython.core.pylabtools", "tornado.platform.asyncio", "matplotlib.pyplot", "sympy"),
+)
 KEPT = "tools.unpainted"  # of the tools, what Matplotlib looks up in a kernel by its name
 
 
@@ -100,11 +107,29 @@ class Provisioner(LocalProvisioner):
         return self.connection_info
 
 
+def draw():
+    """Find the fonts of the book, and build Matplotlib's parser of formulas."""
+    from matplotlib import pyplot
+    from matplotlib.figure import Figure
+
+    from dopplerlib.figures.style import STYLE
+
+    with as_file(STYLE) as path, pyplot.style.context(path):
+        axes = Figure().subplots()
+        for size in (8, 8.5, 9, 9.5, 10.5, 11):  # in points, as figures and their style have them
+            axes.annotate(
+                "text and $x_1$", (0, 1), (0, 2), arrowprops={"arrowstyle": "->"}, fontsize=size
+            )
+        axes.figure.savefig(io.BytesIO(), format="png", backend=f"module://{KEPT}")
+
+
 def prepare():
-    """Import what chapters import, and call what is compiled."""
+    """Import what chapters import, call what is compiled, read the documents, and draw."""
+    gc.disable()  # here and in all copies: they live for seconds, and leave little garbage
     # As a kernel does before its first cell; Matplotlib reads it when it is imported.
     os.environ.setdefault("MPLBACKEND", "module://matplotlib_inline.backend_inline")
-    for name in ("ipykernel.kernelapp", "matplotlib.pyplot", "sympy", KEPT):
+    os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # else a warning on stderr
+    for name in IMPORTED:
         import_module(name)
     import dopplerlib
     from tools.compile import main as compile_all
@@ -113,13 +138,14 @@ def prepare():
         if not module.name.endswith("__main__"):
             import_module(module.name)
     compile_all([])
+    for name in dopplerlib.replication.documents.documents():
+        dopplerlib.replication.documents.read_document(name)
+    draw()
     # A copy would lack other threads, and wait for their locks. One that has ended is there yet.
     deadline = time.monotonic() + PATIENCE
     while len(os.listdir("/proc/self/task")) > 1:
         assert time.monotonic() < deadline, "importing the library leaves threads behind"
         time.sleep(POLL)
-    gc.collect()
-    gc.freeze()  # no copy looks through it for garbage
 
 
 def kernel(argv, cwd, env):

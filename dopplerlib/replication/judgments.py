@@ -81,7 +81,15 @@ def read_judgments(document: str) -> tuple[Judgment, ...]:
     >>> read_judgments("mittermaier2016")[0].claim.id
     'sensitivity'
     """
-    claims = read_document(_checks.one_of("document", document, documents())).claims
+    return _read(document, _claims(document))
+
+
+def _claims(document):
+    return read_document(_checks.one_of("document", document, documents())).claims
+
+
+def _read(document, claims):
+    """Return the judgments on some claims of a document, as far as there are any."""
     found = read_json(f"{document}.verdicts.json", folder=results)["judgments"]
     return tuple(
         Judgment(
@@ -171,9 +179,9 @@ def verdicts_on_page(document: str, page: str) -> PageVerdicts:
     >>> one.claim.id, one.verdict
     ('sensitivity', 'reproduced')
     """
-    judgments = read_judgments(document)
-    _checks.one_of("page", page, tuple(sorted({one.claim.page for one in judgments})))
-    return PageVerdicts(document, [one for one in judgments if one.claim.page == page])
+    claims = _claims(document)
+    _checks.one_of("page", page, tuple(sorted({claim.page for claim in claims})))
+    return PageVerdicts(document, _read(document, [one for one in claims if one.page == page]))
 
 
 def _packed(point) -> dict[str, Any]:

@@ -54,7 +54,7 @@ def test_a_kernel_finds_the_modules_that_any_other_finds(tmp_path):
         assert run(code) == alone.stdout
 
 
-def test_a_kernel_lays_figures_out_without_the_folder_of_the_tools(tmp_path):
+def test_a_kernel_draws_figures_without_the_folder_of_the_tools(tmp_path):
     with started(tmp_path) as (_, run):
         save = "savefig('x.png', backend='module://tools.unpainted')"
         code = f"import matplotlib.pyplot as plt; plt.plot([1, 2]); plt.{save}; print(6 * 7)"

@@ -1,4 +1,4 @@
-"""A figure that is laid out and not painted tells what a painted one would."""
+"""A figure that is drawn and not painted tells what a painted one would."""
 
 import io
 
