@@ -11,8 +11,10 @@ import os
 import re
 import shutil
 import sys
+import sysconfig
 import tomllib
 from contextlib import ExitStack
+from importlib.util import find_spec
 from pathlib import Path
 
 from tools.alone import alone
@@ -60,31 +62,50 @@ def reasons(folder, want):
     ]
 
 
-def halves(lock, folder):
-    """Write every other entry of a lock into one file, the rest into another; return their paths.
+def entries(lock):
+    """Return the entries of a lock: lines that begin with a name, each with the hashes below it."""
+    return re.split(r"^(?=\w)", lock.read_text(encoding="utf-8"), flags=re.MULTILINE)
 
-    An entry is a line that begins with a name, and the hashes below it.
+
+def parts(lock, folder):
+    """Write the installer's entry, every other one of a lock, and the rest; return the paths.
+
+    The installer is that of the book's lock, whichever lock is installed.
     """
-    entries = re.split(r"^(?=\w)", lock.read_text(encoding="utf-8"), flags=re.MULTILINE)
-    paths = [folder / f"{number}-{lock.name}" for number in range(2)]
-    for number, path in enumerate(paths):
-        path.write_text("".join(entries[number::2]), encoding="utf-8")
+    installer = [entry for entry in entries(ROOT / "environment.lock") if entry.startswith("pip==")]
+    split = installer, entries(lock)[0::2], entries(lock)[1::2]
+    paths = [folder / f"{number}-{lock.name}" for number in range(len(split))]
+    for path, part in zip(paths, split, strict=True):
+        path.write_text("".join(part), encoding="utf-8")
     return paths
+
+
+def bundled():
+    """Return the file of the pip that comes with Python, if any, which runs from there."""
+    ensurepip = find_spec("ensurepip")  # Linux distributions may leave it out, or its file
+    places = [sysconfig.get_config_var("WHEEL_PKG_DIR")]
+    places += [Path(ensurepip.origin).parent / "_bundled"] if ensurepip else []
+    return next((path for place in places if place for path in Path(place).glob("pip-*.whl")), None)
 
 
 def steps(folder, lock, temporary):
     """Return the commands that fill a folder, by what they do; those of a step run side by side."""
-    python, install = folder / "bin" / "python", ["-m", "pip", "install", "--quiet", "--no-deps"]
+    python, install = folder / "bin" / "python", ["install", "--quiet", "--no-deps"]
     # Byte code is left to the first import: compiling all of it up front doubles the time, and
     # most of it is never read.
     exact = ["--no-compile", "--require-hashes", "--only-binary", ":all:", "-r"]
+    installer, *halves = parts(lock, temporary)
+    # Python's own pip installs another one only: an old one takes twice as long for the rest. Where
+    # it is not found, venv installs it or says what is missing.
+    own, pip = bundled(), [python, "-m", "pip", *install]
+    first, without = ([python, own / "pip", *install], ["--without-pip"]) if own else (pip, [])
     return {
-        "an empty environment": [[sys.executable, "-m", "venv", folder]],
+        "an empty environment": [[sys.executable, "-m", "venv", *without, folder]],
+        "an installer": [[*first, *exact, installer]],
         # A pip takes one package after the other; two keep two cores busy.
-        f"what {lock.name} holds, half a minute or so": [
-            [python, *install, *exact, half] for half in halves(lock, temporary)
-        ],
-        "the library": [[python, *install, "--no-build-isolation", "--no-index", "-e", ROOT]],
+        f"what {lock.name} holds, half a minute or so": [[*pip, *exact, half] for half in halves],
+        # More quiet: that a checkout is what Python imports is no warning.
+        "the library": [[*pip, "--quiet", "--no-build-isolation", "--no-index", "-e", ROOT]],
     }
 
 

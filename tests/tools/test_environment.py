@@ -193,17 +193,40 @@ def test_what_pyproject_says_of_the_library_counts_and_what_it_says_of_tests_doe
     assert needs(("line-length = 100", "line-length = 99")) != now
 
 
-def test_the_halves_of_a_lock_are_the_lock(tmp_path):
-    """Every entry stands in one of them, with all of its hashes."""
-    lock = ROOT / "environment.lock"
-    entries = []
-    for path in tool.halves(lock, tmp_path):
-        part = path.read_text(encoding="utf-8").replace("\n ", "\a").splitlines()
-        assert len(part) >= 50
-        assert all("==" in entry and "--hash=sha256:" in entry for entry in part)
-        entries += part
-    whole = lock.read_text(encoding="utf-8").replace("\n ", "\a").splitlines()
-    assert sorted(entries) == sorted(whole)
+def entries(lock):
+    """Return the entries of a lock, a line each, with all of their hashes."""
+    found = lock.read_text(encoding="utf-8").replace("\n ", "\a").splitlines()
+    assert all("==" in entry and "--hash=sha256:" in entry for entry in found)
+    return found
+
+
+@pytest.mark.parametrize("name", ["environment.lock", "benchmarks/requirements.lock"])
+def test_the_parts_of_a_lock_are_an_installer_and_the_lock(tmp_path, name):
+    installer, *halves = map(entries, tool.parts(ROOT / name, tmp_path))
+    assert [entry.partition("==")[0] for entry in installer] == ["pip"]
+    assert abs(len(halves[0]) - len(halves[1])) <= 1
+    assert sorted(halves[0] + halves[1]) == sorted(entries(ROOT / name))
+
+
+@pytest.mark.skipif(tool.bundled() is None, reason="Python came without pip")
+def test_the_pip_that_comes_with_python_runs_from_its_file():
+    command = [sys.executable, "-I", tool.bundled() / "pip", "--version"]
+    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert str(tool.bundled()) in told
+
+
+@pytest.mark.parametrize(
+    ("found", "venv", "pip"),
+    [(Path("/a/pip-1.whl"), "venv --without-pip", "/a/pip-1.whl/pip"), (None, "venv", "-m pip")],
+)
+def test_where_python_came_without_pip_venv_has_to_bring_one(
+    tmp_path, monkeypatch, found, venv, pip
+):
+    monkeypatch.setattr(tool, "bundled", lambda: found)
+    steps = tool.steps(tmp_path, ROOT / "environment.lock", tmp_path)
+    empty, installer, *_ = (" ".join(map(str, commands[0])) for commands in steps.values())
+    assert empty.endswith(f"{venv} {tmp_path}")
+    assert f"{pip} install" in installer
 
 
 def test_of_commands_side_by_side_all_run_and_one_that_fails_fails_the_step(tmp_path, monkeypatch):
