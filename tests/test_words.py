@@ -54,6 +54,13 @@ WORDS = {
 }
 
 
+# A document publishes, states or reports; what this project prints is code and its results.
+PUBLISHED = re.compile(
+    r"\b[Aa]s printed\b|\bprinted (?:in|by) (?:the|Tables?|Figs?|Eqs?|Section)\b|\b[Tt]he printed "
+    r"(?!blocks|code|forms?|formulas|function|kernels?|programs?|text|thesis)\w+"
+)
+
+
 def found(text):
     """Return the words of a text that have a better one, each with that."""
     hits = ((re.search(pattern, text), better) for pattern, better in WORDS.items())
@@ -105,6 +112,25 @@ def titles_and_captions(path):
 def test_titles_and_captions_do_so_too(path):
     strange = [(text, words) for text in titles_and_captions(path) if (words := found(text))]
     assert strange == []
+
+
+def test_a_document_publishes_and_does_not_print():
+    files = [
+        *(path for kind in ("*.toml", "*.md") for path in (ROOT / "data").rglob(kind)),
+        *(ROOT / "book").glob("*.md"),
+        *(ROOT / "book" / "reference").glob("*.md"),
+        *LIBRARY.rglob("*.py"),
+    ]
+    texts = {path.relative_to(ROOT): path.read_text(encoding="utf-8") for path in files}
+    for path in chapters():
+        texts[path.name] = "\n".join(cell.source for cell in stored_cells(path))
+    printed = {name: hit[0] for name, text in texts.items() if (hit := PUBLISHED.search(text))}
+    assert printed == {}
+
+
+@pytest.mark.parametrize("text", ["Eq 10 as printed", "printed in Table 2", "the printed estimate"])
+def test_what_a_document_prints_is_found(text):
+    assert PUBLISHED.search(text) and not PUBLISHED.search("the printed kernels")
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 
 explorables.combinations = (() => {
   const SCALE = { from: 1, to: 1000, log: true, ticks: [1, 10, 100, 1000] };
-  const LABELS = { printed: "0.1 I", matched: "matched", shared: "shared", per_axis: "per axis", fixed: "fixed", drawn: "drawn" };
+  const LABELS = { published: "0.1 I", matched: "matched", shared: "shared", per_axis: "per axis", fixed: "fixed", drawn: "drawn" };
 
   const chosen = (switches, state) => Object.entries(switches).map(([name, values]) => values[state[name] ? 1 : 0]);
   const median = ([value]) => value;
@@ -68,7 +68,7 @@ explorables.combinations = (() => {
     },
     say({ runs, middle, moments }, state, { key, nees, nis }) {
       const [P0, noise, start, world] = key, brief = (v) => draw.number(Number(v.toPrecision(3)));
-      const all = key.every((value) => ["printed", "shared", "fixed", "curved"].includes(value));
+      const all = key.every((value) => ["published", "shared", "fixed", "curved"].includes(value));
       const interval = ([value, low, high]) => `${brief(value)} (${brief(low)} to ${brief(high)})`;
       return `P0 ${LABELS[P0]}, process noise ${LABELS[noise]}, start ${LABELS[start]}, ${world} world${all ? ": all as in the paper" : ""}. ` +
         `After ${moments[state.place] + 1} samples the median NEES of ${runs} runs is ${interval(nees)}, and the median NIS ${interval(nis)}; ` +

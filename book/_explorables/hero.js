@@ -75,7 +75,7 @@ explorables.hero = (() => {
     });
   }
 
-  const PRINTED = { P0: -0.5, raise: 0 };
+  const PUBLISHED = { P0: -0.5, raise: 0 };
   return {
     path, record, deviation, entering,
     start: ({ error, every }) => ({ k: 75 * every - 1, dx: error[0], dz: error[2], P0: -0.5, raise: 1.5, aside: 0, seed: 1 }),
@@ -84,7 +84,7 @@ explorables.hero = (() => {
       { name: "raise", label: "noise, at first", min: 0, max: 2, step: 0.1, text: (v) => `× ${draw.brief(10 ** v)}` },
       { name: "P0", label: "P0 deviation", min: -2, max: 0, step: 0.1, text: (v) => `${draw.brief(100 * 10 ** v)} cm` },
       { name: "aside", label: "passes aside", min: -0.3, max: 0.3, step: 0.01, text: (v) => `${draw.number(100 * v, 0)} cm` },
-      { kind: "button", name: "printed", label: "filter as printed", press: () => PRINTED },
+      { kind: "button", name: "published", label: "filter as published", press: () => PUBLISHED },
       { kind: "button", name: "noise", label: "new noise", press: (state) => ({ seed: state.seed + 1 }) },
     ],
     measure(settings, state) {

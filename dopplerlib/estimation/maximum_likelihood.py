@@ -58,7 +58,7 @@ def ml_initialize(
         component: z = v_z = 0 makes the problem one in a plane. Clocks have no bounds.
     likelihood : {"constant_velocity", "stationary"}
         "constant_velocity": the target moves at constant velocity. "stationary": its state is the
-        same at all samples, Eq 10 as printed. Sensors that move and clocks go on in both.
+        same at all samples, Eq 10 as published. Sensors that move and clocks go on in both.
     at : {"first", "last"}
         Sample to which `x`, `P` and `second_x` belong. With "stationary" they are the
         same.

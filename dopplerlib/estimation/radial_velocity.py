@@ -39,7 +39,7 @@ def radial_velocity_terms(
     x: ArrayLike,
     P: ArrayLike,
     sigma: ArrayLike,
-    variance: Literal["corrected", "printed"] = "corrected",
+    variance: Literal["corrected", "published"] = "corrected",
 ) -> RadialVelocity:
     """Return matrix, bias and variance of the pseudo-measurement of a radial velocity.
 
@@ -53,7 +53,7 @@ def radial_velocity_terms(
     sigma : float or array_like, shape (...)
         Standard deviation of the measured velocity in m/s. Leading axes of all arguments broadcast
         against one another.
-    variance : {"corrected", "printed"}
+    variance : {"corrected", "published"}
         How the variance of the second order is computed: twice the trace of C C, which is
         2 sum c_ij c_ji, or 2 sum c_ij^2 as Eq 3.22 prints it.
 
@@ -63,7 +63,7 @@ def radial_velocity_terms(
 
     Notes
     -----
-    Åsheim (2015), Eqs 3.20 to 3.22, after Wang, He and Long (2003), with the printed square root
+    Åsheim (2015), Eqs 3.20 to 3.22, after Wang, He and Long (2003), with the published square root
     of Y'Y inverted: only then is Lambda a unit vector and H the derivative of u.v. B is that of
     the text: half the second derivative between position and velocity, without the one in the
     position twice. For a single radar in one dimension A, B and C vanish, and what is left is the
@@ -95,7 +95,7 @@ def radial_velocity_update(
     P: ArrayLike,
     z: ArrayLike,
     sigma: ArrayLike,
-    variance: Literal["corrected", "printed"] = "corrected",
+    variance: Literal["corrected", "published"] = "corrected",
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Measurement update by a radial velocity.
 
@@ -110,7 +110,7 @@ def radial_velocity_update(
         axes of all arguments broadcast against one another.
     sigma : float or array_like, shape (...)
         Its standard deviation in m/s.
-    variance : {"corrected", "printed"}
+    variance : {"corrected", "published"}
         See `radial_velocity_terms`.
 
     Returns

@@ -84,14 +84,14 @@ def errors_by_samples(
     samples: Sequence[int],
     errors: Sequence[Array],
     bound: Array,
-    printed: tuple[float, ...],
+    published: tuple[float, ...],
 ) -> None:
     """Draw the position errors of starts against the length of the record.
 
     samples (M,): Lengths of the records.
     errors (runs,): Position errors in m for each length.
     bound (M,): Root mean square bounds in m.
-    printed: Number of samples and error of the published start.
+    published: Number of samples and error of the start of Table 2.
     """
     low, first, middle, third, high = np.transpose(
         [np.percentile(error, [5, 25, 50, 75, 95]) for error in errors]
@@ -101,7 +101,7 @@ def errors_by_samples(
     ax.fill_between(samples, first, third, color=OURS, alpha=0.35, lw=0, label="central 50 %")
     ax.loglog(samples, middle, "o-", color=OURS, ms=4, label="median of our starts")
     ax.loglog(samples, bound, color=BOUND, label="bound, root mean square")
-    ax.plot(*printed, "D", color=PUBLISHED, ms=8, mec="white", label="printed in Table 2")
+    ax.plot(*published, "D", color=PUBLISHED, ms=8, mec="white", label="Table 2")
     ax.set_xticks(samples, labels=[f"{k}" for k in samples])
     ax.set_xticks([], minor=True)
     ax.set(xlabel="number of samples", ylabel="position error (m)")

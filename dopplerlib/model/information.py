@@ -43,7 +43,7 @@ def fisher_information(
         Sampling interval in s, or the interval before each sample, see `DopplerLinks.sampled`.
         Without effect on links that have times, and if everything is constant.
     likelihood : {"stationary", "constant_velocity"}
-        "stationary": the target is the same at all samples, Eq 10 as printed. "constant_velocity":
+        "stationary": the target is the same at all samples, as in Eq 10. "constant_velocity":
         it moves at constant velocity, so sample k sees the state F^k x. Sensors and clocks go on
         in both.
 

@@ -32,7 +32,7 @@ def constant_velocity(
         Standard deviation of the acceleration, constant during one interval, in m/s^2.
     noise : {"shared", "per_axis", "horizontal"}
         "shared": one scalar acceleration drives all three axes at once, along (1, 1, 1); Q has
-        rank one. This is Eq 17 as printed. "per_axis": each axis has an acceleration of its
+        rank one. This is Eq 17 as published. "per_axis": each axis has an acceleration of its
         own; Q has rank three. "horizontal": x and y have, and z moves uniformly; rank two.
 
     Returns

@@ -46,19 +46,19 @@ class Claim:
         What has to be so for the claim to be one; it is judged in a world in which it is. "" if
         there is nothing.
     weight : {"finding", "arithmetic", "misprint"}
-        Arithmetic on what is printed cannot fail, and a misprint is no finding: both are counted
+        Arithmetic on published numbers cannot fail, and a misprint is no finding: both are counted
         apart.
     choices : tuple of str
         Names of the choices over which the evidence is swept.
     published : float or tuple of float, optional
-        The number printed, or the limit of a relation. None if it is a curve or a statistic of
+        The number stated, or the limit of a relation. None if it is a curve or a statistic of
         one, for which the evidence brings the number, or if the limit is one of our choices.
     limit : str, optional
         Name of the choice whose values are the limits of a relation, or the factors of a size.
     unit : str
         "" for a pure number.
     rounding : float
-        Half a unit of the last digit printed.
+        Half a unit of the last digit stated.
     relation : {"<", "<=", ">", ">="}, optional
         How the quantity lies to the limit.
     note : str

@@ -9,7 +9,7 @@ from .claims import VERDICTS, Claim, check_claim
 from .verdicts import Judgment
 
 _COUNTED_APART = {
-    "arithmetic": "Arithmetic on what is printed, which cannot fail:",
+    "arithmetic": "Arithmetic on published numbers, which cannot fail:",
     "misprint": "Misprints:",
     "follows": "What follows: assumptions, demands, and inferences of this book:",
 }

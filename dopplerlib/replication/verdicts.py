@@ -325,7 +325,7 @@ def _draw(claim, draws, published, limit):
     values = _checks.finite(_name(claim), draws.values)
     if values.ndim != 1 or not len(values):
         raise _wrong(claim, "Draws with a number from each run", draws)
-    # What is printed as 5.82 may be anything from 5.815 to 5.825.
+    # What is stated as 5.82 may be anything from 5.815 to 5.825.
     below = proportion_interval(values <= published + claim.rounding, 0.999)
     above = proportion_interval(values >= published - claim.rounding, 0.999)
     tail = min(below, above, key=lambda share: share.value)

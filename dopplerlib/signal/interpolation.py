@@ -113,7 +113,7 @@ def parabolic_three_highest(
 
     Notes
     -----
-    Valarmathi et al., Eqs 1 to 3, as printed.
+    Valarmathi et al., Eqs 1 to 3, as published.
 
     Examples
     --------

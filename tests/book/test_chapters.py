@@ -59,6 +59,33 @@ def test_what_cells_print_fits_the_page():
     assert wide == {}
 
 
+def bare(text):
+    """Return whether a text is the repr of a thing that does not name its parts, like a record."""
+    try:
+        value = ast.parse(text, mode="eval").body
+    except SyntaxError:
+        return True
+    return not (isinstance(value, ast.Call) and value.keywords and not value.args)
+
+
+def test_a_number_or_a_list_has_no_name_and_a_record_has():
+    bare_ones = ("88", "False", "[0, 0]", "{'a': 1}", "array([1.], dtype=float32)", "<object at 0>")
+    assert all(map(bare, bare_ones))
+    assert not bare("ConfidenceInterval(value=1.0, low=0.5, high=2.0)")
+
+
+def test_what_a_cell_shows_has_a_name():
+    """A formula, a figure or a table is shown as such; the rest is a print with a label."""
+    nameless = {
+        f"{name}#{cell.id}": output.data["text/plain"]
+        for name, cells in BOOK.items()
+        for cell in cells
+        for output in cell.get("outputs", [])
+        if set(output.get("data", ())) == {"text/plain"} and bare(output.data["text/plain"])
+    }
+    assert nameless == {}
+
+
 @pytest.mark.parametrize("name", WITH_EXERCISES)
 def test_three_key_takeaways_stand_before_the_exercises(name):
     found = re.search(

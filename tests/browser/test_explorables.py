@@ -82,7 +82,7 @@ def test_the_first_page_plays_and_shows_a_filter_that_is_too_sure(tab):
     root = awake(tab, "hero")
     first = shown(tab, root)
     assert first["error"] < 2 * first["claimed"]
-    tab.on("#hero-printed", "e.click()")
+    tab.on("#hero-published", "e.click()")
     assert shown(tab, root)["error"] > 2 * shown(tab, root)["claimed"]
     tab.press("End", "#hero-aside")
     assert shown(tab, root)["stops"] < first["stops"]

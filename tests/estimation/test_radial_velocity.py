@@ -1,4 +1,4 @@
-"""The pseudo-measurement of a radial velocity: corrected terms are right, printed ones are not."""
+"""The pseudo-measurement of a radial velocity: corrected terms are right, published ones wrong."""
 
 import numpy as np
 import pytest
@@ -21,9 +21,9 @@ def test_its_matrix_is_the_jacobian_of_the_range_rate():
 def test_with_the_printed_square_root_it_would_not_be():
     """Eqs 3.20 and 3.21 multiply by the distance, here 2.5 m, where they should divide."""
     Y = X[:2]
-    printed = np.sqrt(Y @ Y) * Y
+    published = np.sqrt(Y @ Y) * Y
     u = Y / np.linalg.norm(Y)
-    assert np.linalg.norm(printed) == pytest.approx(np.linalg.norm(Y) ** 2)
+    assert np.linalg.norm(published) == pytest.approx(np.linalg.norm(Y) ** 2)
     np.testing.assert_allclose(radial_velocity_terms(X, P, 0.1).H[0, 2:], u, rtol=1e-12)
 
 
@@ -52,8 +52,8 @@ def test_the_corrected_moments_are_those_of_the_quadratic_form():
     assert abs(form.mean() - trace) < 5 * form.std() / np.sqrt(len(form))
     squares = (form - trace) ** 2
     assert abs(squares.mean() - extra) < 5 * squares.std() / np.sqrt(len(form))
-    printed = radial_velocity_terms(X, P, 0.1, variance="printed").R[0, 0] - 0.01
-    assert abs(squares.mean() - printed) > 20 * squares.std() / np.sqrt(len(form))
+    published = radial_velocity_terms(X, P, 0.1, variance="published").R[0, 0] - 0.01
+    assert abs(squares.mean() - published) > 20 * squares.std() / np.sqrt(len(form))
 
 
 def test_on_a_line_it_is_a_linear_update_of_the_velocity():

@@ -287,7 +287,7 @@ def noisy_positions(
     track: States (K, 4) as a function of times (K,).
     T: Sampling interval in s; 0.1 s if None.
     rng: Source of the noise.
-    same: Whether x and y get the same random number, as Eq 5.7 is printed, or one each.
+    same: Whether x and y get the same random number, as in the published Eq 5.7, or one each.
     Returns truth, noisy (K, 2): In m.
 
     Examples

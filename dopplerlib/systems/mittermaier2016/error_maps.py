@@ -165,7 +165,7 @@ def comparable(published: PublishedFigure3, panel: Annotated[int, up_to(1, least
     published: The digitized figure.
     panel: 0 for the left map, 1 for the right one.
     Returns (39, 39): Where the published error is known, or known to be small, and no sensor is:
-        neither along y, as printed, nor along x.
+        neither along y, as published, nor along x.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Positions from two radars: bilaterated as printed, or from one filter in the plane."""
+"""Positions from two radars: bilaterated as published, or from one filter in the plane."""
 
 import numpy as np
 import pytest

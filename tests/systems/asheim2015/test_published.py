@@ -64,18 +64,18 @@ def test_the_printed_numbers_agree_where_they_stand_twice():
 def test_the_constants_that_are_printed_twice_contradict_each_other():
     n, q = thesis.reported().scenario.noise, thesis.reported().quoted.noise
     assert n.speed_of_light / n.frequency == pytest.approx(3 / 70)
-    assert q.wavelength_printed / (3 / 70) == pytest.approx(1.15, abs=0.01)
-    resolutions = [one / (2 * n.integration) for one in (q.wavelength_code, q.wavelength_printed)]
-    told = q.velocity_resolution_printed
+    assert q.wavelength_published / (3 / 70) == pytest.approx(1.15, abs=0.01)
+    resolutions = [one / (2 * n.integration) for one in (q.wavelength_code, q.wavelength_published)]
+    told = q.velocity_resolution_published
     assert [abs(one - told) < 5e-5 for one in resolutions] == [True, False]
     assert thesis.resolutions()[0] == pytest.approx(n.speed_of_light * 1e-9 / 2)
-    assert q.pulse_exponent_printed == 9  # and not -9
+    assert q.pulse_exponent_published == 9  # and not -9
 
 
 def test_the_law_has_less_than_the_text_says_at_one_meter_and_at_the_error_area():
     """By hand: 52 - 12 = 40 dB, and 52 - 12 sqrt(16.25) = 3.6 dB."""
     q, area = thesis.reported().quoted.noise, thesis.reported().scenario.error_area
-    assert thesis.snr(1.0) == pytest.approx(40.0) and q.snr_at_one_printed == 42.0
+    assert thesis.snr(1.0) == pytest.approx(40.0) and q.snr_at_one_published == 42.0
     d = np.hypot(*(np.array(area.position) - thesis.radar_positions()).T)
     np.testing.assert_allclose(thesis.snr(d), 3.63, atol=0.005)
     assert area.snr == 10.0

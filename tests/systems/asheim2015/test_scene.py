@@ -107,7 +107,7 @@ def test_the_tracks_end_where_the_thesis_says_up_to_sign_and_order():
     assert np.hypot(*straight) == pytest.approx(q.straight_end_distance, abs=0.005)
     assert np.abs(turned - q.maneuver_end).max() > 6
     np.testing.assert_allclose(np.abs(turned[::-1]), q.maneuver_end, atol=0.11)
-    # The printed distance is that of the printed place.
+    # The published distance is that of the published place.
     assert np.hypot(*q.maneuver_end) == pytest.approx(q.maneuver_end_distance, abs=0.005)
     assert abs(np.hypot(*turned) - q.maneuver_end_distance) > 0.03
 

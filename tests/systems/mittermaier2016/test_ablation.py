@@ -146,7 +146,7 @@ def test_without_switches_the_runs_are_those_of_figure_6():
 
 def test_the_matched_covariance_has_the_size_of_the_printed_errors():
     P0, quoted = paper.matched_P0(), paper.reported().quoted
-    # the printed norms are rounded to a unit of the third decimal, and so are the entries
+    # the published norms are rounded to a unit of the third decimal, and so are the entries
     assert np.sqrt(np.trace(P0[:3, :3])) == pytest.approx(quoted.position_error_norm_m, abs=0.0015)
     assert np.sqrt(np.trace(P0[3:, 3:])) == pytest.approx(
         quoted.velocity_error_norm_m_s, abs=0.0015

@@ -35,5 +35,5 @@ def test_without_curvature_every_filter_is_nearly_consistent_and_with_it_none():
         assert low < value < high
         # A P0 or Q that is larger than the truth halves it; the median of chi-square is 5.3.
         assert 2.5 < value < 8 if world == "straight" else low > 6
-    printed = nees["printed", "shared", "fixed", "curved"]
-    assert printed[1] > 10 * nees["matched", "shared", "fixed", "curved"][2]
+    published = nees["published", "shared", "fixed", "curved"]
+    assert published[1] > 10 * nees["matched", "shared", "fixed", "curved"][2]

@@ -230,7 +230,7 @@ def log_likelihood(error, panel, place):
 
 
 ROTATIONS = {  # places of our map whose errors stand at (a, b) in the reading
-    "as printed": lambda a, b: (a, b),
+    "as published": lambda a, b: (a, b),
     "v_x reversed": lambda a, b: (-a, b),
     "array turned": lambda a, b: (-b, -a),
     "all turned": lambda a, b: (-b, a),
@@ -239,7 +239,7 @@ ROTATIONS = {  # places of our map whose errors stand at (a, b) in the reading
 
 def test_a_map_of_ours_is_recognized_by_its_quantity(found, maps, drawn):
     """Sums over places of the drawn values' likelihood, for both maps."""
-    quantity, printed = (numbers(found[f"figure3-{k}"]) for k in ("quantity", "as-printed"))
+    quantity, published = (numbers(found[f"figure3-{k}"]) for k in ("quantity", "as-published"))
     for record, panel in (("one sample", drawn[0]), ("ten, constant velocity", drawn[1])):
         places = [k for k in PLACES if k[0] and k[1] and panel[k][1] != 3]
         best, loss = {}, {}
@@ -250,8 +250,8 @@ def test_a_map_of_ours_is_recognized_by_its_quantity(found, maps, drawn):
                 for name, turn in ROTATIONS.items()
             }
             best[norm] = max(scores.values(), key=sum)
-            loss[norm] = sum(best[norm]) - sum(scores["as printed"])
-            assert printed[record, norm, 0.15, 2.0] == pytest.approx(loss[norm], rel=1e-6)
+            loss[norm] = sum(best[norm]) - sum(scores["as published"])
+            assert published[record, norm, 0.15, 2.0] == pytest.approx(loss[norm], rel=1e-6)
         behind = np.subtract(best["position"], best["state"])
         ours = found["figure3-quantity"].points[record, 0.15, 2.0]
         assert quantity[record, 0.15, 2.0] == pytest.approx(behind.sum(), rel=1e-6)

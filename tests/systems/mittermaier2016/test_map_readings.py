@@ -35,7 +35,7 @@ def right():
 @pytest.mark.parametrize(
     ("orientation", "axis", "velocity"),
     [
-        ("as printed", "y", (-1, 1)),
+        ("as published", "y", (-1, 1)),
         ("v_x reversed", "y", (1, 1)),
         ("array turned", "x", (-1, 1)),
         ("all turned", "x", (1, 1)),
@@ -106,8 +106,10 @@ def test_the_left_map_is_one_of_position_errors_turned_by_a_quarter(published, l
     best, *others = paper.map_readings(left, published, 0, width=width)
     assert (best.orientation, best.quantity) == ("all turned", "position")
     assert all(other.behind > 2 * other.deviation > 0 for other in others)
-    printed = next(o for o in others if (o.orientation, o.quantity) == ("as printed", "position"))
-    assert printed.behind > 4 * printed.deviation
+    published = next(
+        o for o in others if (o.orientation, o.quantity) == ("as published", "position")
+    )
+    assert published.behind > 4 * published.deviation
 
 
 @pytest.mark.parametrize("width", [0.1, 0.15, 0.25])
@@ -118,12 +120,12 @@ def test_the_right_map_is_turned_too_and_its_estimator_knew_that_the_target_move
     best = readings[0]
     assert (best.orientation, best.label) == ("all turned", "constant_velocity")
     for other in readings:
-        if other.label == "stationary" or other.orientation in ("as printed", "array turned"):
+        if other.label == "stationary" or other.orientation in ("as published", "array turned"):
             assert other.behind > 5 * other.deviation
 
 
 def test_the_bad_corners_are_those_of_the_turned_velocity(published, left):
-    """The text says top right and bottom left; the printed velocity makes them the other two."""
+    """The text says top right and bottom left; the published velocity makes them the other two."""
     (ours,) = left.values()
     x, y = published.x[:, None], published.y
     far = (np.abs(x) > 0.3) & (np.abs(y) > 0.3) & paper.comparable(published, 0)
@@ -138,7 +140,7 @@ def test_the_bad_corners_are_those_of_the_turned_velocity(published, left):
     # 676 places in either pair of corners: a standard error of 2 % for one draw of each.
     assert excess(published.error[0][..., None]) > 0.06
     for name, turn in paper.ORIENTATIONS.items():
-        expected = -1 if name in ("as printed", "array turned") else 1
+        expected = -1 if name in ("as published", "array turned") else 1
         assert expected * excess(turn(ours.position)) > 0.06
 
 

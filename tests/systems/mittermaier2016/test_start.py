@@ -72,7 +72,7 @@ def test_for_a_constant_state_the_box_decides(starts):
     assert np.median(other.position) > 1.2 * np.median(starts["stationary"].position)
 
 
-# Can the printed estimate be one?
+# Can the published estimate be one?
 
 
 @pytest.mark.parametrize("likelihood", LIKELIHOODS)

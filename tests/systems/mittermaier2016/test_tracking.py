@@ -36,7 +36,7 @@ def published():
 
 @pytest.fixture(scope="module", params=SEEDS)
 def runs(request):
-    """Return 300 runs with the printed settings, without a gate."""
+    """Return 300 runs with the published settings, without a gate."""
     return paper.run_example(300, rng=np.random.default_rng(request.param))
 
 
@@ -53,7 +53,7 @@ def test_table_2_has_its_two_columns_in_the_order_of_the_state(printed):
 def test_the_errors_printed_with_table_2_follow_from_its_columns_as_far_as_they_are_rounded(
     printed,
 ):
-    """An entry may be off by 0.0005 in each of three components, the printed error once more."""
+    """An entry may be off by 0.0005 in each of three components, the published error once more."""
     quoted, checks = paper.reported().quoted, printed["derived_checks"]
     difference = paper.reported().table2.x0 - paper.reported().table2.x_ml
     rounding = 0.0005 * (np.sqrt(3) + 1)

@@ -419,7 +419,7 @@ def test_residuals_have_the_variances_of_the_filter(fronts):
     after = float((H @ (P - K @ H @ P) @ H.T)[0, 0]) / R
     for indices, expected in (
         ("before the update", 1.0),
-        ("after the update, as printed", 1 - 2 * after),
+        ("after the update, as published", 1 - 2 * after),
     ):
         found = fronts["eq-14"].points[(indices,)]
         assert abs(found.value - expected) < Z / 2 * (found.high - found.low) / 2 + 0.01
@@ -431,7 +431,7 @@ def test_the_residuals_of_overlapping_windows_are_those_of_a_plain_sum(fronts):
     rng = np.random.default_rng(9)
     R = float(system.measurement_variance(64, 15.0))
     F, _, H, P, K = steady_state(R)
-    found = {"before the update": [], "after the update, as printed": []}
+    found = {"before the update": [], "after the update, as published": []}
     for child in rng.spawn(10):
         n = np.arange(2000)
         noise = (child.standard_normal((2000, 2)) @ [1, 1j]) * np.sqrt(10**-1.5 / 2)
@@ -445,7 +445,7 @@ def test_the_residuals_of_overlapping_windows_are_those_of_a_plain_sum(fronts):
             after.append(one - state[0])
         for name, rest, minus in (
             ("before the update", before, P[0, 0]),
-            ("after the update, as printed", after, (P - K @ H @ P)[0, 0]),
+            ("after the update, as published", after, (P - K @ H @ P)[0, 0]),
         ):
             rest = np.array(rest[500:])
             mad = np.median(np.abs(rest - np.median(rest))) / 0.6745

@@ -1,4 +1,4 @@
-"""Evidence from the printed settings and formulas of the thesis, without a simulation."""
+"""Evidence from the published settings and formulas of the thesis, without a simulation."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ._ratios import choices, ends
 
 
 def settings_and_formulas():
-    """Return the evidence that follows from the printed settings and formulas alone."""
+    """Return the evidence that follows from the published settings and formulas alone."""
     s, q = reported().scenario, reported().quoted
     n = s.noise
     code = filter_settings("code")
@@ -25,7 +25,7 @@ def settings_and_formulas():
     wavelengths = {
         "c / f": n.speed_of_light / n.frequency,
         "of the code": q.noise.wavelength_code,
-        "printed": q.noise.wavelength_printed,
+        "published": q.noise.wavelength_published,
     }
     at = np.hypot(*(np.array(front) - radar_positions()).T)
     return {
@@ -66,7 +66,7 @@ def settings_and_formulas():
 
 
 def gate_growth(own, early=2, late=450):
-    """Return the half-width of the printed gate at a late scan over that at an early one.
+    """Return the half-width of the published gate at a late scan over that at an early one.
 
     own: Settings of the filter.
     early, late: Scans that are compared; between them the last hundred have no measurement.
@@ -95,7 +95,7 @@ def _gate_growth_of(uncertainty):
     if uncertainty == "the filter is less certain":
         return gate_growth(filter_settings("text"))
     f = reported().scenario.filter
-    # The printed half-width, with twice the deviation of the measurement; S cancels.
+    # The published half-width, with twice the deviation of the measurement; S cancels.
     once, twice = (np.sqrt(f.c * factor * f.sigma_range) for factor in (1, 2))
     return float(twice / once)
 
@@ -157,11 +157,11 @@ def _example(time):
 
 def _extra_variance_ratio(state):
     x, P = _example(float(state.split()[1]))
-    right, printed = (
+    right, published = (
         radial_velocity_terms(x, P, 1.0, variance=name).R[0, 0] - 1.0
-        for name in ("corrected", "printed")
+        for name in ("corrected", "published")
     )
-    return float(printed / right)
+    return float(published / right)
 
 
 def _printed_pseudo_innovation():

@@ -10,10 +10,10 @@ from ._figure4 import figure4_evidence
 from ._first_covariance import covariance_evidence
 from ._maps import map_evidence
 from ._other_motion import motion_evidence
-from ._printed import printed_evidence
 from ._right_models import right_evidence
 from ._signal import signal_evidence
 from ._start import start_evidence
+from ._stated import stated_evidence
 from ._tracking import tracking_evidence
 
 
@@ -40,7 +40,7 @@ def evidence(*, rng: np.random.Generator) -> dict[str, object]:
     start, tracking, signal, chain, maps, sweep = rng.spawn(6)
     runs, covariances, right, motion = tracking.spawn(4)
     return (
-        printed_evidence()
+        stated_evidence()
         | signal_evidence(choice, signal)
         | map_evidence(choice, maps)
         | figure4_evidence(choice, sweep)

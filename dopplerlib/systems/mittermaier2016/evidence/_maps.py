@@ -26,7 +26,7 @@ _RECORDS = {
     "ten, constant velocity": (10, "constant_velocity"),
 }
 _TEN = {likelihood: name for name, (samples, likelihood) in _RECORDS.items() if samples == 10}
-_AXES = {"y": "as printed", "x": "array turned"}
+_AXES = {"y": "as published", "x": "array turned"}
 
 
 def map_evidence(
@@ -161,7 +161,7 @@ def _more_similar(error, places):
 
 
 def _readings_of_the_drawing(choice, maps):
-    """Return losses of log-likelihood of the printed orientation and of the norm of the state."""
+    """Return losses of log-likelihood of the published orientation and of the norm of the state."""
     p, scores = reported().figure3, {}
 
     def likelihoods(room, record, norm, width):
@@ -176,7 +176,7 @@ def _readings_of_the_drawing(choice, maps):
 
     def orientation(record, norm, width, room):
         found = likelihoods(room, record, norm, width)
-        return _behind(max(found.values(), key=np.nansum), found["as printed"])
+        return _behind(max(found.values(), key=np.nansum), found["as published"])
 
     def quantity(record, width, room):
         best = {
@@ -187,7 +187,7 @@ def _readings_of_the_drawing(choice, maps):
 
     axes = choice("figure3-record", "norm", "figure3-kernel", "figure3-room")
     return {
-        "figure3-as-printed": sweep(axes, orientation),
+        "figure3-as-published": sweep(axes, orientation),
         "figure3-quantity": sweep([axes[0], *axes[2:]], quantity),
     }
 

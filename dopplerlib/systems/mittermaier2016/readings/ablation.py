@@ -236,7 +236,7 @@ def matched_P0() -> FloatArray:
     """Return a covariance of the start whose size is that of the errors that Table 2 prints.
 
     Returns (6, 6): Diagonal; the same variance for the three positions, in m^2, and for the three
-        velocities, in m^2/s^2, so that the mean squares of the two errors are the printed ones.
+        velocities, in m^2/s^2, so that the mean squares of the two errors are the published ones.
     """
     error = reported().table2.x_ml - reported().table2.x0
     variance = [np.mean(error[:3] ** 2)] * 3 + [np.mean(error[3:] ** 2)] * 3

@@ -16,7 +16,7 @@ from .ablation import Consistency, Noise, consistency_runs, matched_P0
 
 MOMENTS = (0, 1, 3, 10, 20, 50, 100, 200, 300, 500, 700, 999)  # samples
 SWITCHES = {
-    "P0": ("printed", "matched"),
+    "P0": ("published", "matched"),
     "noise": ("shared", "per_axis"),
     "start": ("fixed", "drawn"),
     "world": ("curved", "straight"),
@@ -26,14 +26,14 @@ SWITCHES = {
 @checked
 def combination_runs(
     runs: Runs,
-    P0: Literal["printed", "matched"],
+    P0: Literal["published", "matched"],
     noise: Noise,
     start: Literal["fixed", "drawn"],
     world: Literal["curved", "straight"],
     *,
     rng: np.random.Generator,
 ) -> Consistency:
-    """Run the simulation example with each of four causes as printed, or removed.
+    """Run the simulation example with each of four causes as published, or removed.
 
     runs: Number of independent records.
     P0: That of the paper, 0.1 I, or `matched_P0`.
@@ -46,7 +46,7 @@ def combination_runs(
     Examples
     --------
     >>> rng = np.random.default_rng(1)
-    >>> combination_runs(2, "printed", "shared", "fixed", "curved", rng=rng).nees.shape
+    >>> combination_runs(2, "published", "shared", "fixed", "curved", rng=rng).nees.shape
     (2, 12)
     """
     errors, measurements = rng.spawn(2)
@@ -72,8 +72,8 @@ def saved_combinations() -> dict[tuple[str, ...], dict[str, FloatArray]]:
 
     Examples
     --------
-    >>> printed = saved_combinations()["printed", "shared", "fixed", "curved"]
-    >>> bool(printed["nees"][6, 0] > 100)
+    >>> published = saved_combinations()["published", "shared", "fixed", "curved"]
+    >>> bool(published["nees"][6, 0] > 100)
     True
     """
     rows = read_json("combinations.json", folder=results)["rows"]

@@ -15,7 +15,7 @@ from ..published import PublishedFigure3
 QUANTITIES = ("position", "state", "velocity")
 
 
-def _as_printed(values):
+def _as_published(values):
     """Return a map as it is: sensors along y, the velocity of the text."""
     return values
 
@@ -40,7 +40,7 @@ def _array_turned(values):
 
 
 ORIENTATIONS = {
-    "as printed": _as_printed,
+    "as published": _as_published,
     "v_x reversed": _velocity_reversed,
     "array turned": _array_turned,
     "all turned": _turned,

@@ -27,7 +27,7 @@ def outcomes_evidence(
 
     result: The runs.
     misfit (runs,): What the search for their starts left, see `local_start`.
-    rng: Source of starts within the rounding of the printed one.
+    rng: Source of starts within the rounding of the published one.
     Returns: By the id of the claim.
     """
     axes = read_document("sombatsatien").choice
@@ -89,7 +89,7 @@ def of_one_run(result: PostMortem) -> dict[str, object]:
 
 
 def _rerun(rng):
-    """Return the report's own run, from 100 starts within the rounding of the printed one."""
+    """Return the report's own run, from 100 starts within the rounding of the published one."""
     start = reported().start.estimate + rng.uniform(-5e-5, 5e-5, (100, 6))
     z = np.repeat(reported_record()[None], 100, axis=0)
     result = post_mortem(100, rng=None, z=z, start=start)

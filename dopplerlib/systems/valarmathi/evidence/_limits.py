@@ -12,7 +12,7 @@ from ._comparisons import _largest
 
 
 def limits():
-    """Return the evidence on how low the ratio may be, on the fighter, and on printed numbers."""
+    """Return the evidence on how low the ratio may be, on the fighter, and on published numbers."""
     said, own = reported().stated, reported().chosen
     fused = said.snr_limit_fused_db
 

@@ -1,4 +1,4 @@
-"""Evidence without random numbers: consistency of the printed and the drawn values."""
+"""Evidence without random numbers: consistency of the stated and the drawn values."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ _SPEED_OF_LIGHT = 299_792_458.0  # m/s
 _CARRIER = 24e9  # Hz, Section 2
 
 
-def printed_evidence() -> dict[str, object]:
+def stated_evidence() -> dict[str, object]:
     """Return evidence by the id of the claim, see `evidence`."""
     return (
         _sensors()
@@ -65,7 +65,7 @@ def least_shift(whose):
 
 
 def operations(n, m):
-    """Return additions and multiplications of a cycle of Table 1, as printed, for dense matrices.
+    """Return additions and multiplications of a cycle of Table 1, as published, for dense matrices.
 
     A product of a x b and b x c takes 2 a b c, a solution of m equations for c columns
     2 m^3 / 3 + 2 m^2 c; a shift and its row of the Jacobian some 60.
@@ -91,7 +91,7 @@ def _table2():
 
 
 def initial_nees(start):
-    """Return the NEES of a start under the printed covariance, over its expectation."""
+    """Return the NEES of a start under the published covariance, over its expectation."""
     s = reported().scenario
     error = starts()[start] - s.x0
     return float(error @ np.linalg.solve(s.P0, error)) / 6

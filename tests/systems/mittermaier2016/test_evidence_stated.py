@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import gammaincinv
 
-from dopplerlib.systems.mittermaier2016.evidence import _printed as printed
+from dopplerlib.systems.mittermaier2016.evidence import _stated as stated
 from tests.systems.mittermaier2016 import textbook
 
 DATA = Path(__file__).resolve().parents[3] / "data" / "mittermaier2016"
@@ -16,7 +16,7 @@ DATA = Path(__file__).resolve().parents[3] / "data" / "mittermaier2016"
 
 @pytest.fixture(scope="module")
 def evidence():
-    return printed.printed_evidence()
+    return stated.stated_evidence()
 
 
 @pytest.fixture(scope="module")
