@@ -364,6 +364,11 @@ def covariance(name, value, n, definite=True):
     in some directions. Both are judged after it was scaled to a diagonal of ones, and so whatever
     the units: as correlations, up to rounding. It is returned as it came.
     """
+    return factored(name, value, n, definite)[0]
+
+
+def factored(name, value, n, definite=True):
+    """Return what `covariance` does, and its Cholesky factors, None if one has no spread."""
     array = finite(name, value, (n, n))
     if not _symmetric(array):
         difference = np.abs(array - array.mT)
@@ -374,12 +379,11 @@ def covariance(name, value, n, definite=True):
                 "the diagonal"
             )
     try:  # Scaling changes nothing for this test, which most matrices pass.
-        np.linalg.cholesky(array)
-        return array
+        return array, np.linalg.cholesky(array)
     except np.linalg.LinAlgError:
         least = _least_eigenvalue(array)
     if not definite and least >= -_ROUNDING:
-        return array
+        return array, None
     plain = np.linalg.eigvalsh(array)[..., 0].min()
     got = f"{plain:.3g}" if plain <= 0 else f"{least:.3g} relative to its diagonal"
     raise ValueError(

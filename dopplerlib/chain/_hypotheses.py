@@ -97,32 +97,35 @@ def filters(z, std, weights, array, T, used, apart, sigma_a, free, states, costs
     nis, score = np.full((shape[0], shape[1] - 1), np.nan), np.full(shape, np.inf)
     innovation = np.full((*nis.shape, len(array)), np.nan)
     S = np.full((*innovation.shape, len(array)), np.nan)
-    factors = {}
     costs = np.where(np.isnan(costs), np.inf, costs)
-    for i in np.flatnonzero(costs < costs.min() + CARRIED):
-        covariance = start_covariance(states[i], array, weights, apart * T, free, correlation)
-        if covariance is None:
-            continue
-        x[i, 0], P[i, 0], score[i] = states[i], covariance, costs[i]
-        if shape[1] > 1:
-            # The filter wants a number for what is missing, and does not use it.
-            sigma = np.where(np.isinf(std[used:]), 1.0, std[used:])
-            t = ekf(
-                z[used:], array, states[i], covariance, T, sigma_a, sigma, noise=noise, workers=1
-            )
-            x[i, 1:], P[i, 1:], nis[i] = t.x, t.P, t.nis
-            innovation[i], S[i] = t.innovation, t.S
-            factors[i] = _factor(t.S, np.isnan(t.innovation))
-            score[i, 1:] += np.cumsum(_misfit(t.nis, factors[i]))
-    best = np.argmin(score[:, -1])
-    memory = _memory(innovation[best], factors[best]) if best in factors else np.nan
+    states = np.asarray(states)
+    likely = np.flatnonzero(costs < costs.min() + CARRIED)
+    covariance, known = start_covariances(
+        states[likely], array, weights, apart * T, free, correlation
+    )
+    carried = likely[known]
+    x[carried, 0], P[carried, 0], score[carried, 0] = states[carried], covariance, costs[carried]
+    memory = np.nan
+    if len(carried) and shape[1] > 1:
+        # The filter wants a number for what is missing, and does not use it.
+        sigma = np.where(np.isinf(std[used:]), 1.0, std[used:])
+        records = np.broadcast_to(z[used:], (len(carried), *z[used:].shape))
+        t = ekf(
+            records, array, states[carried], covariance, T, sigma_a, sigma, noise=noise, workers=1
+        )
+        x[carried, 1:], P[carried, 1:], nis[carried] = t.x, t.P, t.nis
+        innovation[carried], S[carried] = t.innovation, t.S
+        factor = _factor(t.S, np.isnan(t.innovation))
+        score[carried, 1:] = costs[carried, None] + np.cumsum(_misfit(t.nis, factor), axis=-1)
+        best = np.argmin(score[carried, -1])
+        memory = _memory(t.innovation[best], factor[best])
     return x, P, innovation, S, nis, memory, score
 
 
 def _factor(S, missing):
     """Return Cholesky factors of innovation covariances, of size 1 where a sensor is missing."""
     if missing.any():
-        apart = missing[:, :, None] | missing[:, None]
+        apart = missing[..., :, None] | missing[..., None, :]
         S = np.where(apart, np.eye(S.shape[-1]), S)
     return np.linalg.cholesky(S)
 
@@ -145,28 +148,32 @@ def _memory(innovation, factor):
     return np.sum(normal[1:] * normal[:-1]) / power if power > 0 else np.nan
 
 
-def start_covariance(x, array, std, T, free, correlation=None):
-    """Return the covariance of a state at the last sample by its Fisher information, or None."""
-    if not np.isfinite(x).all():
-        return None
+def start_covariances(x, array, std, T, free, correlation=None):
+    """Return covariances (.., 6, 6) of states (H, 6) at the last sample, and whose (H,) they are.
+
+    They are those of the Fisher information; a state that it does not determine has none.
+    """
+    known = np.isfinite(x).all(axis=-1)
     back = -T * np.arange(len(std))[::-1]
     F = np.tile(np.eye(6), (len(std), 1, 1))
     F[:, :3, 3:] = back[:, None, None] * np.eye(3)
     # An infinite deviation leaves nothing of the slope.
-    slopes = doppler_jacobian(np.einsum("kij,j->ki", F, x), array) @ F / std[..., None]
+    path = np.einsum("kij,hj->hki", F, x[known])
+    slopes = doppler_jacobian(path, array) @ F / std[..., None]
     if correlation is not None:
         W = whitening_matrices(correlation, np.isfinite(std))
-        slopes = np.einsum("nkl,lni->kni", W, slopes)
+        slopes = np.array([np.einsum("nkl,lni->kni", W, one) for one in slopes])
     # The covariance is (J'J)^-1 with J = `slopes`. With columns scaled to length one,
     # J D^-1 = U W V', it is D^-1 V W^-2 V' D^-1: the product of a root with its transpose.
-    slopes = np.compress(free, slopes.reshape(-1, 6), axis=1)
-    scale = np.linalg.norm(slopes, axis=0)
-    if not scale.all():
-        return None
-    _, w, vt = np.linalg.svd(slopes / scale, full_matrices=False)
-    if w[-1] < 1e-6 * w[0]:  # a direction that the start says nothing of
-        return None
-    root = vt.T / w / scale[:, None]
-    P = np.zeros((6, 6))
-    P[np.ix_(free, free)] = root @ root.T
-    return P
+    slopes = np.compress(free, slopes.reshape(len(slopes), std.size, 6), axis=-1)
+    scale = np.linalg.norm(slopes, axis=-2)
+    lengths = scale.all(axis=-1)
+    slopes, scale = slopes[lengths], scale[lengths]
+    _, w, vt = np.linalg.svd(slopes / scale[:, None], full_matrices=False)
+    sees = w[:, -1] >= 1e-6 * w[:, 0]  # or the start says nothing of a direction
+    root = (vt.mT / w[:, None] / scale[..., None])[sees]
+    P = np.zeros((len(root), 6, 6))
+    P[(slice(None), *np.ix_(free, free))] = root @ root.mT
+    for some in (lengths, sees):
+        known[known] = some
+    return P, known

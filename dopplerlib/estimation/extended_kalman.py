@@ -194,7 +194,8 @@ def _filtered(runs, array, given, inputs, results, workers):
             memory = given.memories[lanes] = new_memory(lanes, *setup)
         return compiled(lanes)(memory.copy(), *sizes, z, *given.inputs, x0, P0, *results)
 
-    if runs <= lanes:
+    workers = workers or os.cpu_count() or 1
+    if runs <= lanes or workers == 1:
         return run(z, x0, P0, *results)
 
     def part(first, last):
@@ -203,7 +204,6 @@ def _filtered(runs, array, given, inputs, results, workers):
 
         return run(*map(own, (z, x0, P0, *results)))
 
-    workers = workers or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:
         # A list: `all` stops at the first False, and what has not begun by then never would.
         return all([*pool.map(part, *_parts(runs, lanes, workers))])

@@ -58,25 +58,31 @@ def of_track(track):
 
 
 def estimates(track):
-    """Return states and covariances of a track, or raise if it has none that can be judged."""
+    """Return states, covariances and their Cholesky factors of a track.
+
+    Factors are None if a covariance is singular.
+    Raises ValueError if it has none that can be judged.
+    """
     if not (hasattr(track, "x") and hasattr(track, "P")):  # an ImmTrack has them as well
         _checks.instance("track", track, Track)
     if track.P is None:
         raise ValueError('track must hold P, got None: ask ekf for it with keep=("P",)')
     x = _checks.finite("track.x", track.x, (None, None))
-    P = _checks.covariance("track.P", track.P, x.shape[-1], definite=False)
+    P, factor = _checks.factored("track.P", track.P, x.shape[-1], definite=False)
     _checks.check_shape("track.P", P, (*x.shape[-2:], x.shape[-1]))
     _checks.check_broadcast("track.P", P.shape[:-3], "track.x", x.shape[:-2])
-    return x, P
+    return x, P, factor
 
 
-def whiten(vector, S, names="innovation, S"):
+def whiten(vector, S, names="innovation, S", factor=None):
     """Return L^-1 vector with S = L L': independent values of variance 1 if all is right.
 
     Factors L that all runs share are used once for all of them. What is further off than 1e60
     deviations is refused, for sums of squares could not hold it.
+
+    factor: L, if it is known.
     """
-    L = np.linalg.cholesky(S)
+    L = np.linalg.cholesky(S) if factor is None else factor
     with np.errstate(all="ignore"):
         if vector.ndim > 2 and L.size == np.prod(L.shape[-3:]):
             runs = vector.reshape(-1, *vector.shape[-2:])

@@ -49,16 +49,15 @@ def nees(track: Track | ImmTrack, truth: ArrayLike) -> FloatArray:
     >>> nees(track, truth=np.zeros((2, 2))).tolist()
     [0.0, 25.0]
     """
-    x, P = estimates(track)
+    x, P, factor = estimates(track)
     truth = _checks.finite("truth", truth, x.shape[-2:])
     _checks.check_broadcast("truth", truth.shape[:-2], "track.x", x.shape[:-2])
     with np.errstate(over="ignore"):
         error = truth - x
     _checks.estimates("track, truth", error, what="errors")
-    try:
-        return np.sum(whiten(error, P, "track, truth") ** 2, axis=-1)
-    except np.linalg.LinAlgError:
+    if factor is None:
         return _form_of_singular(error, P, np.maximum(np.abs(truth), np.abs(x)))
+    return np.sum(whiten(error, P, "track, truth", factor) ** 2, axis=-1)
 
 
 def nis(innovation: ArrayLike, S: ArrayLike) -> FloatArray:

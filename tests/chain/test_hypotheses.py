@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.stats import multivariate_normal
 
 from dopplerlib import doppler_jacobian, doppler_shift, ekf
-from dopplerlib.chain._hypotheses import filters, parts, start_covariance
+from dopplerlib.chain._hypotheses import filters, parts, start_covariances
 from dopplerlib.chain.simulation import simulate_baseband
 from dopplerlib.systems import mittermaier2016 as paper
 
@@ -136,12 +136,17 @@ def test_the_covariance_of_a_start_is_the_inverse_of_all_information():
         J += H.T @ (H / std[k][:, None] ** 2)
     expected = np.linalg.inv(J)
     scale = np.sqrt(np.diagonal(expected))
-    found = start_covariance(S.x0, S.array, std, T, ALL)
+    (found,), _ = start_covariances(S.x0[None], S.array, std, T, ALL)
     # The information has a condition of 1e6 or so.
     assert_allclose(found / np.outer(scale, scale), expected / np.outer(scale, scale), atol=1e-7)
 
 
 def test_a_start_from_too_little_has_no_covariance():
-    """A ring sees no range from a snapshot."""
-    assert start_covariance(S.x0, S.array, np.full((1, 6), 0.1), T, ALL) is None
-    assert start_covariance(np.full(6, np.nan), S.array, np.full((9, 6), 0.1), T, ALL) is None
+    """A ring sees no range from a snapshot; nor is there one of a state that was not found."""
+    states = np.array([np.full(6, np.nan), S.x0])
+    for samples, expected in ((1, [False, False]), (9, [False, True])):
+        std = np.full((samples, 6), 0.1)
+        covariances, known = start_covariances(states, S.array, std, T, ALL)
+        assert_array_equal(known, expected)
+        assert len(covariances) == sum(expected)
+    assert not start_covariances(states[:1], S.array, std, T, ALL)[1].any()
