@@ -30,33 +30,26 @@ def _odd_call(place, call):
 
 def odd_values(value):
     """Return a strategy of oddities for what is validly `value`."""
-    parts = [st.sampled_from(CONSTANTS)]
     if isinstance(value, (bool, np.bool_)):
-        pass
-    elif symbolic(value):
-        parts += [st.sampled_from(symbolic(value))] * 2
-    elif _numeric(value) and np.ndim(value):
-        kinds = (changes.SHAPES, changes.VALUES, changes.REPRESENTATIONS)
-        parts += [changes.entries(), *map(st.sampled_from, kinds)]
-    elif _numeric(value):
+        return ANYTHING
+    if symbolic(value):
+        return st.one_of(ANYTHING, st.sampled_from(symbolic(value)))
+    if _numeric(value):
         whole = np.asarray(value).dtype.kind in "iu"
-        kinds = (changes.SHAPES, changes.VALUES, changes.WHOLE if whole else changes.SCALARS)
-        parts += [st.floats().map(_just), st.integers(-3, 40).map(_just)]
-        parts += map(st.sampled_from, kinds)
-    elif isinstance(value, str):
-        parts += [st.sampled_from(changes.TEXTS), st.text(max_size=8).map(_just)]
-    elif isinstance(value, Path):
-        parts.append(st.sampled_from(changes.PATHS))
-    elif dataclasses.is_dataclass(value):
-        parts += [_fields(value)] * 3
-    elif callable(value):
-        parts = [st.sampled_from([odd for odd in CONSTANTS if not callable(odd.make(None))])]
-        parts.append(st.sampled_from(changes.CALLABLES))
-    elif isinstance(value, (list, tuple)) and len(value):
-        parts += [_items(value), st.sampled_from(changes.SEQUENCES)]
-    elif isinstance(value, dict) and value:
-        parts += [_held(value)] * 2
-    return st.one_of(parts)
+        return KINDS["array" if np.ndim(value) else "whole" if whole else "number"]
+    if isinstance(value, str):
+        return KINDS["text"]
+    if isinstance(value, Path):
+        return KINDS["path"]
+    if dataclasses.is_dataclass(value):
+        return st.one_of(ANYTHING, _fields(value))
+    if callable(value):
+        return KINDS["callable"]
+    if isinstance(value, (list, tuple)) and len(value):
+        return st.one_of(ANYTHING, _items(value), KINDS["sequence"])
+    if isinstance(value, dict) and value:
+        return st.one_of(ANYTHING, _held(value))
+    return ANYTHING
 
 
 def _numeric(value):
@@ -69,6 +62,26 @@ def _numeric(value):
 
 def _just(value):
     return Odd(repr(value), lambda valid: value, "text" if isinstance(value, str) else "number")
+
+
+# One object for all values of a kind: Hypothesis takes longer to look at a strategy than to draw.
+ANYTHING = st.sampled_from(CONSTANTS)
+_SHAPES, _VALUES = st.sampled_from(changes.SHAPES), st.sampled_from(changes.VALUES)
+_ANY_NUMBER = ANYTHING, st.floats().map(_just), st.integers(-3, 40).map(_just), _SHAPES, _VALUES
+_UNCALLABLE = [odd for odd in CONSTANTS if not callable(odd.make(None))]
+KINDS = {
+    "array": ANYTHING
+    | changes.entries()
+    | _SHAPES
+    | _VALUES
+    | st.sampled_from(changes.REPRESENTATIONS),
+    "whole": st.one_of(*_ANY_NUMBER, st.sampled_from(changes.WHOLE)),
+    "number": st.one_of(*_ANY_NUMBER, st.sampled_from(changes.SCALARS)),
+    "text": ANYTHING | st.sampled_from(changes.TEXTS) | st.text(max_size=8).map(_just),
+    "path": ANYTHING | st.sampled_from(changes.PATHS),
+    "callable": st.sampled_from(_UNCALLABLE) | st.sampled_from(changes.CALLABLES),
+    "sequence": st.sampled_from(changes.SEQUENCES),
+}
 
 
 def _fields(record):

@@ -15,6 +15,7 @@ import numpy as np
 from dopplerlib.estimation.initial_estimate import ImplausibleStart
 
 from .documented import refused
+from .targets import RESULTS
 from .values import Raised
 
 SECONDS = 60  # of processor time, for one call; in the first one numba may compile
@@ -82,7 +83,8 @@ def _spread(function, arguments):
 def _use(record):
     assert record == record, "a record must equal itself"
     assert hash(record) == hash(record)
-    repr(record)
+    with np.printoptions(threshold=8, edgeitems=1):  # of its arrays a few entries tell as much
+        repr(record)
     for name, value in vars(type(record)).items():
         if isinstance(value, property) and not name.startswith("_"):
             getattr(record, name)
@@ -196,10 +198,11 @@ _BASELINES = {}
 
 
 def baseline(target, call):
-    """Return the result of the valid call."""
+    """Return the result of the valid call: that of the example that made it, if it is known."""
     key = target.name, id(call)
     if key not in _BASELINES:
-        _BASELINES[key] = call, invoke(target, fresh(call))
+        result = RESULTS.get(id(call))
+        _BASELINES[key] = call, invoke(target, fresh(call)) if result is None else result
     return _BASELINES[key][1]
 
 

@@ -33,6 +33,7 @@ PACKAGES = (
     "systems.sombatsatien", "systems.valarmathi",
 )  # fmt: skip
 MOST = 3  # calls of a function that are kept
+RESULTS = {}  # what the kept calls gave, by their id: they need not be made again
 # How a docstring says that arguments are checked elsewhere: such a function promises nothing.
 UNCHECKED = re.compile(r"\bunchecked\b|\bnot checked\b|nothing is checked", flags=re.IGNORECASE)
 
@@ -193,9 +194,9 @@ def _key(function):
 def trace(package):
     """Return {(name, module): calls} that the Examples in `package` make, the shortest first.
 
-    The names that the examples import are wrapped while they run. Constructors are wrapped in
-    their class, so that records that a function makes are caught as well. What a test before has
-    left in a cache would not be made again.
+    Of functions of the package: their names are wrapped while the examples run. Constructors are
+    wrapped in their class, so that records that a function makes are caught as well. What a test
+    before has left in a cache would not be made again.
     """
     calls = {}
     with contextlib.ExitStack() as stack:
@@ -203,6 +204,7 @@ def trace(package):
             for value in vars(module).values():
                 if inspect.isfunction(getattr(value, "__wrapped__", None)):
                     getattr(value, "cache_clear", lambda: None)()
+        for module in modules(package):
             for name, value in public(module):
                 if inspect.isclass(value):
                     _wrap_class(value, calls, stack)
@@ -263,7 +265,7 @@ def _recorder(function, calls, key=None, drop=0):
             return function(*args, **kwargs)
         call = {name: _kept(value) for name, value in call.items()}
         result = function(*args, **kwargs)
-        _keep(calls, key, call)
+        _keep(calls, key, call, result)
         return result
 
     recording.__wrapped__ = function
@@ -279,12 +281,19 @@ def _kept(value):
     return copy.deepcopy(value)
 
 
-def _keep(calls, key, call):
+def _keep(calls, key, call, result=None):
     """Add a call to those of a function if it is among the shortest, of equal ones the first."""
     found = calls.setdefault(key, [])
     found.append((_length(call), call))
     found.sort(key=lambda one: one[0])
+    for _, dropped in found[MOST:]:
+        RESULTS.pop(id(dropped), None)
     del found[MOST:]
+    if result is not None and any(call is kept for _, kept in found):
+        with contextlib.suppress(
+            TypeError, copy.Error
+        ):  # an iterator: what it gives is the example's
+            RESULTS[id(call)] = copy.deepcopy(result)
 
 
 def _length(call):
