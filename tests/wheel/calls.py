@@ -1,15 +1,18 @@
 """Import all of a dopplerlib that was installed somewhere, and call something of every part of it.
 
-Run as ``python -I -S calls.py ROOT LIBRARIES [OPTION ...]``: isolated, so that no checkout is seen.
-ROOT is the folder or the zip file with the library, LIBRARIES the folder of what it depends on.
+Run as ``python -I -S calls.py LIBRARIES ROOT[:ROOT ...] [OPTION ...]``: isolated, so that no
+checkout is seen. LIBRARIES is the folder of what the library depends on, ROOT the folder or the zip
+file that holds it. Of several each is used by a copy of one process, which has imported LIBRARIES.
+Prints a line of JSON for each ROOT.
 
 core     What extras bring counts as not installed.
 strict   NumPy raises where it would warn, and a process that is started afresh filters, too.
-quick    The filter, which takes seconds to compile, is left out.
+quick    The filter and a search for bad samples, which take seconds to compile, are left out.
 """
 
 import json
 import multiprocessing
+import os
 import pkgutil
 import sys
 from importlib import import_module
@@ -119,10 +122,26 @@ def check(result, np):
         raise ValueError(f"got {result!r}")
 
 
-def main(root, libraries, *options):
-    """Do what the command line asks for, and print what was done."""
-    sys.path[:0] = [root]
+def main(libraries, roots, *options):
+    """Use the library of each root as the command line asks for."""
     sys.path.append(libraries)
+    first, *others = roots.split(os.pathsep)
+    if others:
+        for name in ("matplotlib.pyplot", "scipy.optimize", "scipy.signal", "sigmf", "sympy"):
+            import_module(name)
+        import_module("numba").njit(lambda x: x)(1.0)  # reads the tables of its compiler
+    for root in others:
+        copy = os.fork()
+        if not copy:
+            return use(root, *options)
+        if os.waitpid(copy, 0)[1]:
+            raise SystemExit(f"not used: {root}")
+    use(first, *options)
+
+
+def use(root, *options):
+    """Import and call all that is at a root, and print what was done."""
+    sys.path[:0] = [root]
     if "core" in options:
         sys.meta_path.insert(0, Blocked)
     import dopplerlib as dl
@@ -139,6 +158,8 @@ def main(root, libraries, *options):
     if "core" not in options:
         calls |= {f"figures.{name}": call for name, call in figure_calls(dl, np).items()}
     if "quick" in options:
+        # Which samples are valid is told by loops that would be compiled for each root.
+        dl.signal._joining.valid_samples = lambda x: np.ones(x.shape, bool)
         calls = {what: call for what, call in calls.items() if what not in COMPILED}
     if "strict" in options:
         calls["spawn"] = lambda: filtered_afresh(dl, np)
@@ -147,10 +168,8 @@ def main(root, libraries, *options):
             check(call(), np)
         except Exception as error:
             errors.append(f"{what}: {type(error).__name__}: {error}")
-    loop = dl.systems.valarmathi._pair_kernel.choose
-    hits = sum(loop.stats.cache_hits.values()) if hasattr(loop, "stats") else 0
-    print(json.dumps({"imports": names, "calls": [*calls], "errors": errors, "found": hits,
-                      "packages": packages}))  # fmt: skip
+    told = {"imports": names, "calls": [*calls], "errors": errors, "packages": packages}
+    print(json.dumps(told | {"root": root}), flush=True)
 
 
 if __name__ == "__main__":

@@ -28,6 +28,7 @@ LEFTOVERS = (
     "tests/.ruff_cache/CACHEDIR.TAG",
 )
 SDIST = "import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])"
+WHEEL = SDIST.replace("sdist", "wheel")
 # Nothing compiled can be kept: it is compiled sooner still.
 NOWHERE = {"HOME": "/dev/null", "PYTHONDONTWRITEBYTECODE": "1", "NUMBA_OPT": "0"}
 
@@ -85,7 +86,9 @@ def sdist(tmp_path_factory):
 @pytest.fixture(scope="module")
 def wheel(sdist):
     """Return the wheel that the sdist builds, without a network."""
-    pip("wheel", "--no-build-isolation", "--wheel-dir", sdist.parent, sdist)
+    shutil.unpack_archive(sdist, sdist.parent / "unpacked", filter="data")
+    (project,) = (sdist.parent / "unpacked").iterdir()
+    run([sys.executable, "-c", WHEEL, str(sdist.parent)], cwd=project)
     (made,) = sdist.parent.glob("*.whl")
     return made
 
@@ -98,16 +101,29 @@ def installed(wheel):
     return folder
 
 
-@pytest.fixture
-def copy(installed, tmp_path):
-    """Return a copy of the installed library, in a folder of its own."""
-    folder = tmp_path / "copy"
-    shutil.copytree(
-        installed / "dopplerlib",
-        folder / "dopplerlib",
-        ignore=shutil.ignore_patterns("__pycache__"),
-    )
-    return folder
+@pytest.fixture(scope="module")
+def elsewhere(installed, tmp_path_factory):
+    """Return what was told of the library in each of three other places, used side by side.
+
+    Nothing compiled can be kept in any of them.
+    """
+    folder = tmp_path_factory.mktemp("elsewhere")
+    roots = {name: folder / name for name in ("read-only", "sourceless")}
+    for root in roots.values():
+        ignore = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(installed / "dopplerlib", root / "dopplerlib", ignore=ignore)
+    archive = shutil.make_archive(str(folder / "library"), "zip", roots["read-only"])
+    # So that no folder can be made, by root neither.
+    for path in [*roots["read-only"].rglob("*")]:
+        if path.is_dir():
+            (path / "__pycache__").write_bytes(b"")
+    # Compiled as by -OO, which would compile all of NumPy, SciPy and SymPy so, too.
+    assert compileall.compile_dir(roots["sourceless"], quiet=1, legacy=True, optimize=2)
+    for path in roots["sourceless"].rglob("*.py"):
+        path.unlink()
+    roots["zip"] = Path(archive)
+    told = used([*roots.values()], "quick", **NOWHERE)
+    return {name: told[str(root)] for name, root in roots.items()}
 
 
 def pip(command, *arguments):
@@ -121,19 +137,24 @@ def run(command, **settings):
     return done.stdout
 
 
-def used(root, *options, flags=(), **environment):
-    """Import and call all that is at `root`, from an empty folder; return what was told of it."""
-    empty = Path(environment.setdefault("MPLCONFIGDIR", str(root.parent / "matplotlib")))
+def used(roots, *options, flags=(), **environment):
+    """Import and call all that is at each root, from an empty folder; return what was told of it.
+
+    One process imports what they depend on, which takes longer than the library itself, and its
+    copies use one of them each.
+    """
+    empty = Path(environment.setdefault("MPLCONFIGDIR", str(roots[0].parent / "matplotlib")))
     empty.mkdir(exist_ok=True)
     told = ("NUMBA", "XDG", "PYTHON")
     inherited = {key: value for key, value in os.environ.items() if not key.startswith(told)}
     inherited["NUMBA_OPT"] = "1"  # compiles sooner; what the bits are is no question here
     command = [sys.executable, *flags, "-I", "-S", str(ROOT / "tests" / "wheel" / "calls.py")]
     libraries = sysconfig.get_path("purelib")
-    told = run([*command, str(root), libraries, *options], cwd=empty, env=inherited | environment)
-    told = json.loads(told.splitlines()[-1])
-    assert told["packages"] == [True] * 3
-    return told
+    where = os.pathsep.join(map(str, roots))
+    told = run([*command, libraries, where, *options], cwd=empty, env=inherited | environment)
+    lines = [json.loads(line) for line in told.splitlines() if line.startswith("{")]
+    assert [line["packages"] for line in lines] == [[True] * 3] * len(roots)
+    return {line["root"]: line for line in lines}
 
 
 def test_every_part_of_the_library_is_called():
@@ -177,7 +198,7 @@ def test_the_wheel_holds_the_library_and_its_data(wheel):
 def test_everything_works_where_it_is_installed_with_warnings_as_errors_and_a_strict_numpy(
     installed,
 ):
-    told = used(installed, "strict", flags=("-W", "error"))
+    told = used([installed], "strict", flags=("-W", "error"))[str(installed)]
     assert told["errors"] == [] and "spawn" in told["calls"]
     modules = {
         path.relative_to(installed).with_suffix("").as_posix().replace("/", ".")
@@ -188,27 +209,20 @@ def test_everything_works_where_it_is_installed_with_warnings_as_errors_and_a_st
 
 
 def test_without_extras_all_else_works_and_they_are_named_with_their_command(installed):
-    told = used(installed, "core", NUMBA_DISABLE_JIT="1")
+    told = used([installed], "core", NUMBA_DISABLE_JIT="1")[str(installed)]
     assert len(told["errors"]) == len(EXTRAS)
     for name, extra in EXTRAS.items():
         (error,) = (error for error in told["errors"] if f"{name} is needed here" in error)
         assert f'pip install "dopplerlib[{extra}]"' in error
 
 
-def test_it_runs_where_nothing_can_be_written(copy):
-    for folder in [copy / "dopplerlib", *(p for p in copy.rglob("*") if p.is_dir())]:
-        (folder / "__pycache__").write_bytes(b"")  # so that no folder can be made, by root neither
-    assert used(copy, "quick", **NOWHERE)["errors"] == []
+def test_it_runs_where_nothing_can_be_written(elsewhere):
+    assert elsewhere["read-only"]["errors"] == []
 
 
-def test_it_runs_from_a_zip_file_without_a_home(copy, tmp_path):
-    archive = shutil.make_archive(str(tmp_path / "library"), "zip", copy)
-    assert used(Path(archive), "quick", **NOWHERE)["errors"] == []
+def test_it_runs_from_a_zip_file_without_a_home(elsewhere):
+    assert elsewhere["zip"]["errors"] == []
 
 
-def test_it_runs_without_its_sources_docstrings_and_assertions(copy):
-    # Compiled as by -OO, which would compile all of NumPy, SciPy and SymPy so, too.
-    assert compileall.compile_dir(copy, quiet=1, legacy=True, optimize=2)
-    for path in copy.rglob("*.py"):
-        path.unlink()
-    assert used(copy, "quick", **NOWHERE)["errors"] == []
+def test_it_runs_without_its_sources_docstrings_and_assertions(elsewhere):
+    assert elsewhere["sourceless"]["errors"] == []
