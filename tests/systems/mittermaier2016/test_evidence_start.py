@@ -40,16 +40,21 @@ def found(both):
 
 
 def shifts(x, samples):
-    path = np.repeat(np.asarray(x)[None], samples, axis=0)
-    path[:, :3] += S.T * np.arange(samples)[:, None] * path[:, 3:]
+    """Return the shifts (..., samples, 6) of targets at x (..., 6) that go straight on."""
+    path = np.repeat(np.asarray(x)[..., None, :], samples, axis=-2)
+    path[..., :3] += S.T * np.arange(samples)[:, None] * path[..., 3:]
     return doppler_shift(path, S.array)
+
+
+def slopes(x, samples, step=1e-5):
+    """Return the slopes of all shifts (6 samples, 6), by differences."""
+    there, back = (shifts(x + sign * step * np.eye(6), samples) for sign in (1, -1))
+    return (there - back).reshape(6, -1).T / (2 * step)
 
 
 def bound(samples):
     """Return the root mean square position error at the bound, by differences of the shifts."""
-    steps = 1e-5 * np.eye(6)
-    slopes = [(shifts(S.x0 + d, samples) - shifts(S.x0 - d, samples)).ravel() / 2e-5 for d in steps]
-    _, r = np.linalg.qr(np.stack(slopes, axis=-1))
+    _, r = np.linalg.qr(slopes(S.x0, samples))
     return S.sigma_f * np.linalg.norm(np.linalg.inv(r)[:3])
 
 
@@ -137,6 +142,7 @@ def test_estimates_are_those_of_descents_from_random_states():
             fit = least_squares(
                 lambda x, record=record: ((shifts(x, 10) - record) / S.sigma_f).ravel(),
                 x,
+                jac=lambda x: slopes(x, 10) / S.sigma_f,
                 bounds=(low, high),
                 x_scale=[1, 1, 1, 0.1, 0.1, 0.1],
                 max_nfev=60,
