@@ -143,19 +143,34 @@ def seeds_tried(names):
     return None if bad else rows
 
 
+def seed_tables(tried):
+    """Return the tables of the rows of `seeds_tried`: a column a seed, then what is undecided."""
+    counts, undecided = [], []
+    for name in sorted(tried):
+        seeds, *by_verdict, others = zip(*tried[name], strict=True)
+        every = zip(VERDICTS, by_verdict, strict=True)
+        counts += [(name, verdict, *numbers) for verdict, numbers in every if any(numbers)]
+        every = zip(seeds, others, strict=True)
+        undecided += [(name, seed, other) for seed, other in every if other != "none"]
+    return (
+        table(("document", "verdict", *(f"seed {seed}" for seed in SEEDS_TRIED)), counts),
+        table(("document", "seed", "undecided here or on record, but not in both"), undecided),
+    )
+
+
 def page(ran, tried):
     """Return the page as text, given the section on where it ran and the rows of `seeds_tried`."""
     chapter_table, data_table = hash_tables()
-    rows = [(name, *row) for name in sorted(tried) for row in tried[name]]
+    count_table, undecided_table = seed_tables(tried)
     return f"""(sec-reproducibility)=
 # Reproducibility
 
 <!-- Written by `make record`; do not edit. -->
 
-`make test` executes every chapter and compares all text output with the stored output;
-`make record` compares every byte, figures included. Both first install the exact versions of
-`environment.lock`. This page lists the hashes of the stored results and data, and the environment
-in which they were last made.
+This page is for a check that the results of the book repeat: it lists the environment in which they
+were last made, the hashes of results and data, and the verdicts under other seeds. `make test`
+executes every chapter and compares all text output with the stored output; `make record` compares
+every byte, figures included. Both first install the exact versions of `environment.lock`.
 
 ## {RAN}
 
@@ -177,10 +192,15 @@ that does not depend on the result. If they change the verdict of a row, the row
 Random results change with the seed, but verdicts should not. No limit is moved to achieve this: if
 there are too few runs, the verdict on the page is *undecided*. A verdict is decided only if it also
 holds on an interval of twice the width of the 95 % interval. `make record` draws the noise for
-every claim again with five other seeds. It fails if a verdict changes into another one; the last
-column names the verdicts that are undecided with some seeds and decided with others.
+every claim again with five other seeds, and fails if a verdict changes into another one. The first
+table counts the claims of each document with each verdict; a verdict without a row has no claim.
 
-{table(("document", "seed", *VERDICTS, "undecided with one of the two seeds only"), rows)}
+{count_table}
+
+A claim can be undecided with one seed and decided with another. The second table names the claims
+for which that holds between a seed and the record; with all other seeds there are none.
+
+{undecided_table}
 
 ## Data
 
@@ -199,11 +219,22 @@ def recorded(text):
     ran, tried = (
         text.split(f"\n## {title}\n")[1].split("\n## ")[0].strip() for title in (RAN, SEEDS)
     )
-    rows = {}
-    row = re.compile(r"^\| (\w+) \| (\d[\d |]*) \| ([\w, -]+) \|$", flags=re.MULTILINE)
-    for name, numbers, other in row.findall(tried):
-        rows.setdefault(name, []).append((*map(int, numbers.split(" | ")), other))
-    return ran, {name: rows[name] for name in rows if name in documents()}
+    counts = {}
+    for name, verdict, numbers in re.findall(r"(?m)^\| (\w+) \| (\w+) \| (\d[\d |]*) \|$", tried):
+        counts.setdefault(name, {})[verdict] = [int(number) for number in numbers.split(" | ")]
+    named = re.findall(r"(?m)^\| (\w+) \| (\d+) \| (.*) \|$", tried)
+    others = {(name, int(seed)): other for name, seed, other in named}
+    none = [0] * len(SEEDS_TRIED)
+    return ran, {
+        name: [
+            (seed, *numbers, others.get((name, seed), "none"))
+            for seed, *numbers in zip(
+                SEEDS_TRIED, *(counts[name].get(verdict, none) for verdict in VERDICTS), strict=True
+            )
+        ]
+        for name in counts
+        if name in documents()
+    }
 
 
 def main(argv=None):

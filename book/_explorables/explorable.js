@@ -198,6 +198,7 @@ function mountExplorable(root, { start, controls, measure, draw: picture, say })
   svg.after(panel, says, spoken);
 
   const again = { kind: "button", name: "again", label: "start again", press: () => start(settings) };
+  const buttons = made("div", { class: "control buttons" }); // side by side, also on a phone
   const shown = [...controls(settings), again].map((control) => {
     const id = `${name}-${control.name}`;
     const set = control.set ?? ((value) => ({ [control.name]: value }));
@@ -209,7 +210,7 @@ function mountExplorable(root, { start, controls, measure, draw: picture, say })
       input = made("button", { id, type: "button" });
       input.textContent = control.label;
       input.addEventListener("click", () => change(control.press(state)));
-      row.append(input);
+      buttons.append(input);
     } else if (control.kind === "choice") {
       input = made("select", { id });
       for (const [key, words] of control.options) {
@@ -231,9 +232,10 @@ function mountExplorable(root, { start, controls, measure, draw: picture, say })
       row.append(label, input, value);
       if (control.kind === "play") row.prepend(playing(control));
     }
-    panel.append(row);
+    if (row.hasChildNodes()) panel.append(row);
     return { control, input, value };
   });
+  panel.append(buttons);
 
   // Lets a slider run to its end, from the start again if it is there; a second press stops it.
   function playing({ name: key, label, min, max, step }) {

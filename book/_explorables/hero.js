@@ -155,16 +155,19 @@ explorables.hero = (() => {
       shapes += draw.path(corners(34), stop ? "published filled" : "axis", true);
       shapes += draw.text([sign[0], sign[1] + 5], stop ? "STOP" : "go on", "middle", stop ? "bold sign" : undefined);
       const judged = (value) => (value === null ? "∞" : draw.brief(value));
-      [
-        `error ${centimeters(numbers.error)}, the filter says ${centimeters(numbers.claimed)}`,
-        `NIS ${judged(numbers.nis)} (right: 6), NEES ${judged(numbers.nees)} (right: ${draw.number(neesMedian, 1)})`,
-        `${numbers.stops} of ${count} runs stop`,
-      ].forEach((words, i) => (shapes += draw.text([84, y + 2 + 19 * i], words)));
+      const pairs = [
+        [`error ${centimeters(numbers.error)}`, `the filter says ${centimeters(numbers.claimed)}`],
+        [`NIS ${judged(numbers.nis)} (right: 6)`, `NEES ${judged(numbers.nees)} (right: ${draw.number(neesMedian, 1)})`],
+        [`${numbers.stops} of ${count} runs stop`],
+      ];
+      const words = width < 400 ? pairs.flat() : pairs.map((pair) => pair.join(", "));
+      words.forEach((line, i) => (shapes += draw.text([84, y + 2 + 19 * i], line)));
+      const below = y + 19 * words.length + 13; // as high as the sign, with three lines
 
       // Measured shifts, and errors.
       const x = wide ? sceneWidth + 44 : 44, across = width - x - 10;
       const time = { from: 0, to: samples * T, ticks: [0, 0.5, 1] };
-      y = wide ? 26 : y + 88;
+      y = wide ? 26 : below + 18;
       const shifts = draw.panel({ x, y, width: across, height: 104 }, { ...time, names: false }, { from: 0, to: 130, ticks: [0, 50, 100] });
       shapes += shifts.frame() + draw.text([x, y - 9], "measured: six shifts (Hz)");
       sensors.forEach((_, n) => (shapes += draw.path(past.map((i) => shifts.to((i + 1) * T, run.z[i][n])), `sensor-${n}`)));
@@ -180,7 +183,7 @@ explorables.hero = (() => {
       const now = panel.x(numbers.time);
       shapes += draw.line([now, shifts.top], [now, panel.bottom], "truth dashed");
       return {
-        height: Math.round(Math.max(panel.bottom + 44, sceneHeight + 100)), shapes,
+        height: Math.round(Math.max(panel.bottom + 44, below)), shapes,
         handles: [{
           name: "start", label: "First estimate", at: start, now: state.dx,
           text: `${draw.number(100 * state.dx, 1)} cm off in x, ${draw.number(100 * state.dz, 1)} cm in z`,

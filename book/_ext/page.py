@@ -3,10 +3,11 @@
 Also repairs of what stands below: an id that every exercise has again, heads of columns that are
 empty, roles of the bibliography that no screen reader understands; columns of words, which wrap and
 begin at the left, while those of numbers do neither, but for an interval: in a wide table it stands
-below its value.
+below its value. Powers of ten are printed as such, not as a program writes them.
 """
 
 import re
+from decimal import Decimal
 from html import escape, unescape
 from itertools import count
 from pathlib import Path
@@ -29,9 +30,16 @@ CITE = {
     "label": "cite-button",
 }
 EMPTY_HEAD = re.compile(r"<th[^>]*>\s*(?:<p>\s*</p>)?\s*</th>")
-CELL = re.compile(r"(?<=<td>)[^<]+(?=</td>)")  # of a table that a cell prints
+CELL = re.compile(r"(?<=>)[^<>]+(?=</t[dh]>|</p>\s*</td>)")  # of a table
+POWER = re.compile(r"(?<![\w.])(\d(?:\.\d+)?)e([+-]\d+)(?!\w)")
+SIGNS = {"&lt;=": "\u2264", "&gt;=": "\u2265"}
+PLAIN = range(-3, 5)  # exponents of numbers that need no power of ten
+RAISED = str.maketrans(
+    "-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"
+)
 RESULTS = re.compile(r'<table class="results">.*?</table>', re.S)
 ROW = re.compile(r"<tr>.*?</tr>", re.S)
+LABEL = re.compile(r'<th scope="row">([^<]{15,})</th>')  # of a row, and long
 ENTRY = re.compile(r"<(?:td|th)(?=[ >])")
 PHRASE = re.compile(r"[^\W\d]\S* \S")  # begins with a word, and another one follows
 HYPHEN = re.compile(r"(?<![^\s(])-(?=\d)")
@@ -111,17 +119,34 @@ def describe(app, pagename, template, context, doctree):
 
 
 def repaired(body):
-    """Return a page whose tables have no empty heads, and minuses; whose lists hold items."""
+    """Return a page whose tables have minuses, powers and no empty heads; its lists hold items."""
     body = EMPTY_HEAD.sub("<td></td>", body)
-    body = CELL.sub(lambda m: HYPHEN.sub("\u2212", m[0]), body)
+    body = CELL.sub(lambda m: _printed(m[0]), body)
     body = RESULTS.sub(lambda m: _phrases(INTERVAL.sub(" <wbr>", m[0])), body)
     return ROLES.sub("", body) if "citation-list" in body else body
 
 
+def _printed(text):
+    """Return the text of a cell with the signs of print for those of a program."""
+    for typed, sign in SIGNS.items():
+        text = text.replace(typed, sign)
+    return HYPHEN.sub("\u2212", POWER.sub(_power, text))
+
+
+def _power(number):
+    """Return a number that was written with an "e" as it is printed."""
+    digits, exponent = number[1], int(number[2])
+    if exponent in PLAIN or not float(digits):
+        return f"{Decimal(number[0]):f}"
+    return f"{digits}\u00b7".removeprefix("1\u00b7") + "10" + str(exponent).translate(RAISED)
+
+
 def _phrases(table):
-    """Return a table of results whose columns with phrases say so in their class."""
+    """Return a table of results whose columns with phrases or long labels are marked as such."""
     rows = [re.findall(r"<td>(.*?)</td>", row, re.S) for row in ROW.findall(table)]
     columns = {n for row in rows for n, cell in enumerate(row, 1) if PHRASE.match(unescape(cell))}
+    if LABEL.search(table):
+        columns.add(0)
 
     def marked(row):
         place = count()

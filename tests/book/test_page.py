@@ -111,6 +111,24 @@ def test_a_hyphen_before_a_number_is_printed_as_a_minus_but_not_in_code():
     assert page.repaired(table) == "<td>\u22121 (\u22122 to 3-4)</td><td><code>-1</code></td>"
 
 
+@pytest.mark.parametrize(
+    ("written", "printed"),
+    [
+        ("1.60e+04 (-3e-03 to 1e+05)", "16000 (\u22120.003 to 10\u2075)"),
+        (
+            "above 1e-08, 2.5e-12 Hz; 0e+00",
+            "above 10\u207b\u2078, 2.5\u00b710\u207b\u00b9\u00b2 Hz; 0",
+        ),
+        ("a1e-05 1.2.3e+1 e+05", "a1e-05 1.2.3e+1 e+05"),
+        ("&lt;= 3, &gt;= 1e-4", "\u2264 3, \u2265 10\u207b\u2074"),
+    ],
+)
+def test_a_table_prints_powers_and_signs_and_code_keeps_them(written, printed):
+    text = "<td>{0}</td><th>{0}</th><td><p>&gt; {0}</p></td>"
+    assert page.repaired(text.format(written)) == text.format(printed)
+    assert page.repaired(f"<td><code>{written}</code></td>") == f"<td><code>{written}</code></td>"
+
+
 def test_figures_are_shown_at_one_scale_and_others_as_they_are(tmp_path):
     (tmp_path / "a.png").write_bytes(bytes(16) + (1000).to_bytes(4) + bytes(8))
     images = [nodes.image(uri="a.png", width="100%"), nodes.image(uri="b.svg")]
@@ -134,6 +152,10 @@ def test_a_column_with_phrases_is_marked_and_an_interval_may_go_below_its_value(
     table = (
         '<table class="results"><tr><td></td><th scope="col">n</th><th scope="col">why</th></tr>'
         '<tr><th scope="row">a b</th><td>1 (0 to 2)</td><td>bent &amp; late</td></tr></table>'
+    )
+    long = '<tr><th scope="row">a label of two lines</th><td>1</td></tr>'
+    assert '<tr><th class="phrase" scope="row">a label' in page.repaired(
+        f'<table class="results">{long}</table>'
     )
     table, written = table.replace("1 (0", "1 <wbr>(0"), table
     marked = table.replace("<td>bent", '<td class="phrase">bent')

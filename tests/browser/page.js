@@ -15,7 +15,13 @@ window.book = (() => {
   // Nothing reaches beyond the page, unless it scrolls in a box of its own.
   function tooWide() {
     const root = document.documentElement, width = root.clientWidth;
-    if (root.scrollWidth <= width) return [];
+    // Texts of a drawing that leave it make no page wider: they are cut.
+    const cut = [...document.querySelectorAll(".explorable svg text")].filter((text) => {
+      const { left, right } = text.getBoundingClientRect();
+      return left < 0 || right > width;
+    });
+    const found = cut.map((text) => `is cut: ${name(text)}`);
+    if (root.scrollWidth <= width) return found;
     const inBox = (element) => {
       for (let box = element.parentElement; box; box = box.parentElement) {
         if (box !== document.body && box !== root && scrolls(box)) return true;
@@ -26,7 +32,7 @@ window.book = (() => {
       const box = element.getBoundingClientRect();
       return box.width && box.right > width + 1 && !inBox(element);
     });
-    return [`scrolls sideways, ${root.scrollWidth} px: ${wide.slice(-3).map(name).join(", ")}`];
+    return [...found, `scrolls sideways, ${root.scrollWidth} px: ${wide.slice(-3).map(name).join(", ")}`];
   }
 
   function broken() {
