@@ -116,6 +116,9 @@ def describe(app, pagename, template, context, doctree):
         context["header_buttons"].append(CITE | {"url": url})
     if "body" in context:
         context["body"] = repaired(context["body"])
+    for _, entries in context.get("genindexentries", ()):
+        # Each module stands below "module", and the page of its names is in the contents.
+        entries[:] = [entry for entry in entries if not entry[0].startswith("dopplerlib.")]
 
 
 def repaired(body):

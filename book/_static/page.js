@@ -58,15 +58,28 @@ addEventListener("DOMContentLoaded", () => {
   for (const box of document.querySelectorAll(".output:has(> table.results)")) watch.observe(box);
 });
 
+// A table of three or more columns with sentences: on a phone each row is a card, whose lines name the column.
+addEventListener("DOMContentLoaded", () => {
+  for (const table of document.querySelectorAll(".bd-article table:not(.results)")) {
+    if (!(table.tHead?.rows[0].cells.length > 2)) continue;
+    const cells = [...table.tBodies[0].rows].flatMap((row) => [...row.cells]);
+    if (!cells.some((cell) => cell.textContent.trim().length > 25)) continue;
+    table.classList.add("cards");
+    const heads = [...table.tHead.rows[0].cells].map((head) => head.textContent.trim());
+    for (const cell of cells) {
+      if (cell.cellIndex) cell.dataset.head = heads[cell.cellIndex];
+      cell.classList.toggle("none", ["", "—"].includes(cell.textContent.trim()));
+    }
+  }
+});
+
 // A scorecard: the number of each verdict, buttons that leave rows out, and what was tried folded.
 addEventListener("DOMContentLoaded", () => {
   for (const table of document.querySelectorAll(".bd-article table:has(td:first-child .verdict)")) {
-    const heads = [...table.tHead.rows[0].cells].map((head) => head.textContent);
     const rows = new Map();
     for (const row of table.tBodies[0].rows) {
       const word = row.querySelector(".verdict")?.textContent;
       if (word) rows.set(word, [...(rows.get(word) ?? []), row]);
-      for (const cell of [...row.cells].slice(1)) cell.dataset.head = heads[cell.cellIndex];
     }
     if (rows.size < 2 || table.tBodies[0].rows.length < 10) continue;
     const bar = document.createElement("div");

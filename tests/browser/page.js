@@ -35,6 +35,18 @@ window.book = (() => {
     return [...found, `scrolls sideways, ${root.scrollWidth} px: ${wide.slice(-3).map(name).join(", ")}`];
   }
 
+  // Words of a table stand side by side: a column of one word a line is no text.
+  function squeezed() {
+    const range = document.createRange();
+    return [...document.querySelectorAll(".bd-article td")].filter((cell) => {
+      const text = cell.innerText.trim(), words = text.split(/\s+/).length;
+      if (words < 8 || !cell.checkVisibility()) return false;
+      range.selectNodeContents(cell);
+      const lines = range.getBoundingClientRect().height / parseFloat(getComputedStyle(cell).lineHeight);
+      return text.length < 10 * lines;
+    }).map((cell) => `is squeezed: ${name(cell)}`);
+  }
+
   function broken() {
     const found = [];
     for (const image of document.querySelectorAll("img[src]")) {
@@ -162,5 +174,5 @@ window.book = (() => {
     const options = { resultTypes: ["violations"], preload: false, performanceTimer: false };
     return axe.run(document, { ...options, runOnly: chosen }).then(heavy);
   };
-  return { tooWide, broken, thin, mark, axeFinds };
+  return { tooWide, squeezed, broken, thin, mark, axeFinds };
 })();

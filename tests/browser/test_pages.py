@@ -66,6 +66,8 @@ def test_a_page_is_whole_and_accessible_at_every_width_and_in_both_themes(
         for width in widths:
             tab.resize(width)
             told = tab.run("book.tooWide()")
+            if (width, theme) == (NARROW, "dark"):
+                told += tab.run("book.squeezed()")
             if width == WIDE:
                 new = tab.run(f"book.mark({json.dumps(looked_at[theme])})")
                 whole = theme == "light"  # what is no question of colors is the same in both
