@@ -37,14 +37,11 @@ window.book = (() => {
 
   // Words of a table stand side by side: a column of one word a line is no text.
   function squeezed() {
-    const range = document.createRange();
-    return [...document.querySelectorAll(".bd-article td")].filter((cell) => {
-      const text = cell.innerText.trim(), words = text.split(/\s+/).length;
-      if (words < 8 || !cell.checkVisibility()) return false;
-      range.selectNodeContents(cell);
-      const lines = range.getBoundingClientRect().height / parseFloat(getComputedStyle(cell).lineHeight);
-      return text.length < 10 * lines;
-    }).map((cell) => `is squeezed: ${name(cell)}`);
+    const letters = (cell) => cell.clientWidth / parseFloat(getComputedStyle(cell).fontSize);
+    const cells = [...document.querySelectorAll(".bd-article td")].filter(
+      (cell) => cell.clientWidth && letters(cell) < 8 && cell.innerText.trim().split(/\s+/).length > 7,
+    );
+    return cells.map((cell) => `is squeezed into ${cell.clientWidth} px: ${name(cell)}`);
   }
 
   function broken() {
