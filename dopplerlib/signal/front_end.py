@@ -1,5 +1,6 @@
 """Low-pass filter and decimation."""
 
+from functools import lru_cache
 from typing import overload
 
 import numpy as np
@@ -140,8 +141,6 @@ def lowpass_decimate(x, fs, factor, taps=None, valid=None):
 
 def _impulse_response(fs, cutoff, taps):
     """Return a linear-phase low-pass filter (taps,), and its delay in s."""
-    from scipy.signal import firwin
-
     fs = _checks.moderate_number("fs", fs)
     taps = _checks.whole_number("taps", taps)
     if taps % 2 == 0:
@@ -149,7 +148,17 @@ def _impulse_response(fs, cutoff, taps):
     cutoff = _checks.positive_number("cutoff", cutoff)
     if not cutoff < fs / 2:
         raise ValueError(f"cutoff must be less than fs / 2 = {fs / 2:g}, got {cutoff:g}")
-    return firwin(taps, cutoff, fs=fs), (taps - 1) / 2 / fs
+    return _designed(taps, cutoff, fs), (taps - 1) / 2 / fs
+
+
+@lru_cache
+def _designed(taps, cutoff, fs):
+    """Return the filter, read-only: records that are made one by one have the same."""
+    from scipy.signal import firwin
+
+    b = firwin(taps, cutoff, fs=fs)
+    b.setflags(write=False)
+    return b
 
 
 def _filtered(valid, taps):

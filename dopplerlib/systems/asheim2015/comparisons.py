@@ -1,5 +1,6 @@
 """Comparisons of trackers beyond those of the thesis."""
 
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -175,12 +176,16 @@ def rejected_scans(
     2
     """
     records = simulate_radars(runs, rng=rng, duration=duration, rate="exact")
-    found = []
-    for y in starts:
-        row = []
-        for q in densities:
-            own = filter_settings("modern", q=float(q), floor=floor)
-            used = central_filter(records, own, start=[0.0, y, 0.0, 0.0]).updated[:, 1]
-            row.append(bootstrap_interval(np.positive, [(~used).mean(axis=1)], rng=rng))
-        found.append(row)
-    return found
+    # All starts are filtered together.
+    many = replace(records, z=np.tile(records.z, (len(starts), 1, 1, 1)))
+    begin = np.zeros((len(many.z), 4))
+    begin[:, 1] = np.repeat(starts, runs)
+    rejected = []
+    for q in densities:
+        own = filter_settings("modern", q=float(q), floor=floor)
+        used = central_filter(many, own, start=begin).updated[:, 1]
+        rejected.append(np.split((~used).mean(axis=1), len(starts)))
+    return [
+        [bootstrap_interval(np.positive, [row[m]], rng=rng) for row in rejected]
+        for m in range(len(starts))
+    ]
