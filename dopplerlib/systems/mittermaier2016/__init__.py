@@ -23,8 +23,9 @@ _HOME = by_name(
         "readings.combinations": "combination_runs saved_combinations",
         "readings.faults": "faulty_filters linear_filter linear_world",
         "readings.maps": "ORIENTATIONS MapReading map_readings map_score",
-        "readings.noise_sweep": "DotsStructure dots_log_likelihood dots_structure saved_noise_sweep"
-        " saved_sweep_readings scored_levels sweep_readings sweep_score",
+        "readings.noise_sweep": "DotsStructure coarse_readings dots_log_likelihood dots_structure"
+        " saved_coarse_sweeps saved_noise_sweep saved_sweep_readings scored_levels sweep_readings"
+        " sweep_score",
         "readings.example": "ExampleReadings example_readings example_summary ruled_out"
         " still_counts",
     }

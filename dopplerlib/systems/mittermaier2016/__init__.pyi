@@ -61,8 +61,10 @@ from .readings.maps import MapReading as MapReading
 from .readings.maps import map_readings as map_readings
 from .readings.maps import map_score as map_score
 from .readings.noise_sweep import DotsStructure as DotsStructure
+from .readings.noise_sweep import coarse_readings as coarse_readings
 from .readings.noise_sweep import dots_log_likelihood as dots_log_likelihood
 from .readings.noise_sweep import dots_structure as dots_structure
+from .readings.noise_sweep import saved_coarse_sweeps as saved_coarse_sweeps
 from .readings.noise_sweep import saved_noise_sweep as saved_noise_sweep
 from .readings.noise_sweep import saved_sweep_readings as saved_sweep_readings
 from .readings.noise_sweep import scored_levels as scored_levels
@@ -96,6 +98,7 @@ __all__ = [
     "SweepReading",
     "TrackErrors",
     "ablated_ekf",
+    "coarse_readings",
     "combination_runs",
     "comparable",
     "consistency_runs",
@@ -127,6 +130,7 @@ __all__ = [
     "run_example",
     "run_noise_sweep",
     "samples_needed",
+    "saved_coarse_sweeps",
     "saved_combinations",
     "saved_noise_sweep",
     "saved_sum_errors",

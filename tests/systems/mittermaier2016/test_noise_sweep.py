@@ -210,6 +210,22 @@ def test_the_saved_study_is_what_the_seed_gives():
         )
 
 
+@pytest.mark.parametrize("name", paper.coarse_readings())
+def test_the_saved_errors_on_the_coarse_grid_are_what_the_seed_gives(name):
+    levels = [2, 13]  # of those that are saved
+    again = paper.run_noise_sweep(
+        [paper.scored_levels()[i] for i in levels],
+        2,
+        rng=np.random.default_rng(6),
+        reading=paper.coarse_readings()[name],
+        bound=False,
+    )
+    for part, saved in zip(
+        ("position", "velocity"), paper.saved_coarse_sweeps()[name], strict=True
+    ):
+        np.testing.assert_allclose(getattr(again, part), saved[levels, :2], rtol=1e-5)
+
+
 def test_the_saved_scores_are_those_of_all_readings_and_what_the_seed_gives():
     scored = paper.saved_sweep_readings()
     assert {row[0] for row in scored} == set(paper.sweep_readings())

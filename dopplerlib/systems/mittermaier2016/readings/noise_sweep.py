@@ -222,6 +222,41 @@ def sweep_score(
     return one(np.arange(draws)), *(float(q) for q in np.quantile(again, (0.025, 0.975)))
 
 
+def coarse_readings() -> dict[str, SweepReading]:
+    """Return readings on the coarse grid whose errors are saved: the default one and three others.
+
+    Examples
+    --------
+    >>> list(coarse_readings())
+    ['default', 'towards the center', 'stationary', 'own velocity at each point']
+    """
+    spacing = reported().figure4_study.ours.comparison.coarse
+    return {
+        "default": SweepReading(spacing=spacing),
+        "towards the center": SweepReading("center", (0.5, 1.5), spacing=spacing),
+        "stationary": SweepReading(likelihood="stationary", spacing=spacing),
+        "own velocity at each point": SweepReading("square", (0, 1), False, spacing=spacing),
+    }
+
+
+def saved_coarse_sweeps() -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Return errors on the coarse grid, as ``make study NAME=noise_sweep`` left them.
+
+    Returns {label: (position, velocity)}: Of `coarse_readings`, mean sizes of the errors at the
+        `scored_levels` and of each draw, (L, D), in m and m/s.
+
+    Examples
+    --------
+    >>> saved_coarse_sweeps()["default"][0].shape
+    (16, 20)
+    """
+    lines = read_lines("noise_sweep.coarse.csv", folder=results)
+    table, names = np.genfromtxt(lines, delimiter=",", names=True), coarse_readings()
+    shape = len(names), len(scored_levels()), -1
+    parts = (table[name].reshape(shape) for name in ("position", "velocity"))
+    return dict(zip(names, zip(*parts, strict=True), strict=True))
+
+
 @checked
 def saved_sweep_readings(again: bool = False) -> list[tuple[SweepReading, float, float, float]]:
     """Return every reading with its score, the most likely first, as they are saved.
