@@ -1,5 +1,6 @@
 """Constants and memory of a Gaussian sum filter, as the compiled loop takes them."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -98,7 +99,7 @@ def prepare(array, x0, P0, T, sigma_a, noise, block, lightest, loss, gate_probab
     mean, P = turn @ (F @ (x0 - frame.origin)), turn @ P @ turn.T
     _checks.estimates("x0, P0, T, sigma_a", mean, P)
     P = _checks.covariance("P0", (P + P.T) / 2, 6)
-    grid, widths, overlaps = _windows(mean, P, radius, least)
+    grid, widths, overlaps = _windows(mean.tobytes(), P.tobytes(), radius, least)
     information = np.linalg.inv(P)
     prior = -0.5 * float(np.linalg.slogdet(P)[1])
     limit = np.inf if gate_probability is None else float(chdtri(1, 1 - gate_probability))
@@ -166,11 +167,15 @@ def _frame(array, x0):
     return center, axes, radius, positions, bool(flat), float(least)
 
 
+@lru_cache(maxsize=16)
 def _windows(mean, P, radius, least):
     """Return centers (W, 3) of eta and ln rho where the prior is, and the windows' widths (W, 3).
 
-    The third (W,) is the logarithm of the sum of all windows, in the mean over each.
+    The third (W,) is the logarithm of the sum of all windows, in the mean over each. The prior is
+    given by the bytes of its mean and covariance: of the last ones the windows are remembered,
+    which take as long as a thousand samples of a filter.
     """
+    mean, P = np.frombuffer(mean), np.frombuffer(P).reshape(6, 6)
     draws = np.random.default_rng(0).standard_normal((_DRAWN, 6))
     root = np.linalg.cholesky(P)
     seen = _seen(mean + draws @ root.T, radius, least)
