@@ -39,8 +39,9 @@ os.environ.update(ONE_THREAD)
 
 
 def pytest_collection_finish():
-    """Look for garbage again, but not among what has been collected."""
+    """Look for garbage again, but not among what has been collected, and not that often."""
     gc.freeze()
+    gc.set_threshold(10_000, 20, 100)
     gc.enable()
 
 
