@@ -1,6 +1,7 @@
 """Imports go one way: a package may use only itself and those above it in this list."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -48,20 +49,21 @@ ONLY = {"sympy": "derive", "matplotlib": "figures", "importlib": "_lazy"}
 HARMLESS = "importlib.resources", "importlib.metadata"
 
 
+@cache
 def imports(path, package):
-    """Yield (line, absolute dotted name) of every import in a module, inside functions as well.
+    """Return (line, absolute dotted name) of every import in a module, inside functions as well.
 
-    ``from a import b`` yields a.b, since b may be a module. `package` is where the module stands.
+    ``from a import b`` is a.b, since b may be a module. `package` is where the module stands.
     """
+    found = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            for alias in node.names:
-                yield node.lineno, alias.name
+            found += [(node.lineno, alias.name) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            base = package[: len(package) + 1 - node.level] if node.level else []
-            base = [*base, node.module] if node.module else base
-            for alias in node.names:
-                yield node.lineno, ".".join([*base, alias.name])
+            base = package[: len(package) + 1 - node.level] if node.level else ()
+            base = (*base, node.module) if node.module else base
+            found += [(node.lineno, ".".join([*base, alias.name])) for alias in node.names]
+    return found
 
 
 def violations(library):
@@ -72,7 +74,7 @@ def violations(library):
         if parts[0] not in MAY_IMPORT:
             found.append(f"{path.relative_to(library).as_posix()}: has no place in the order")
             continue
-        for line, name in imports(path, [library.name, *parts[:-1]]):
+        for line, name in imports(path, (library.name, *parts[:-1])):
             top, _, rest = name.partition(".")
             if top == library.name:
                 allowed = rest.split(".")[0] in MAY_IMPORT[parts[0]]
@@ -99,7 +101,7 @@ def private_imports(library):
     found = []
     for path in sorted(library.rglob("*.py")):
         parts = path.relative_to(library).with_suffix("").parts
-        for line, name in imports(path, [library.name, *parts[:-1]]):
+        for line, name in imports(path, (library.name, *parts[:-1])):
             top, package, *rest = [*name.split("."), ""]
             foreign = top == library.name and package != parts[0] and not package.startswith("_")
             if foreign and any(part.startswith("_") for part in rest):

@@ -91,8 +91,9 @@ def sweep_cell(
 
     Examples
     --------
-    >>> from dopplerlib.systems.valarmathi.fusion_study import study_table
-    >>> len(sweep_cell("fighter", 20, study_table(), runs=1))
+    >>> cee = np.array([[[1.0, 2.0], [2.0, 1.0]], [[1.0, 2.0], [1.0, 2.0]]])
+    >>> table = WindowTable([0, 10], [0, 20], [8, 64], cee)
+    >>> len(sweep_cell("fighter", 20, table, runs=1))
     333
     """
     name, gentle = PATHS[_checks.one_of("path", path, tuple(PATHS))]

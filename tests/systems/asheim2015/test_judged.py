@@ -212,11 +212,8 @@ def test_another_program_leaves_at_the_same_times(judged, program, misses, lengt
     times = []
     for radar in (0, 1):
         used = program.ranges("code", radar)[1][:, program.t <= length + 1e-9]
-        gone = [
-            next((k for k in range(len(u) - misses + 1) if not u[k : k + misses].any()), None)
-            for u in used
-        ]
-        times.append(np.array([length if k is None else k * T for k in gone]))
+        gone = ~np.lib.stride_tricks.sliding_window_view(used, misses, axis=1).any(axis=-1)
+        times.append(np.where(gone.any(axis=1), gone.argmax(axis=1) * T, length))
         drawn(judged(f"R{radar + 1}-departs", **at), times[-1])
     later = (times[1] - times[0])[np.minimum(*times) < length]
     same(judged("R2-longer", **at), np.median(later), 1.25 * later.std() / np.sqrt(len(later)))

@@ -143,19 +143,21 @@ def crossings(angle, rule, velocity, runs, seed):
     truth = paper.crossing_paths(np.deg2rad(angle))
     rng = np.random.default_rng(seed)
     F, part = ncv_transition(S.T), slice(None) if velocity else slice(0, None, 2)
-    exchanged, lost = [], []
+    exchanged, lost, gains, P, R = [], [], [], S.E_z, S.E_z
+    for _ in range(1, truth.shape[1]):  # does not depend on what is measured
+        P = F @ P @ F.T + S.E_x
+        K = P @ np.linalg.inv(P + R)
+        gains.append((np.linalg.inv((P + R)[part, part]), K.T))
+        P = P - K @ P
     for _ in range(runs):
         z = truth + rng.standard_normal(truth.shape) * np.tile([S.sigma_x, S.sigma_v], 2)
-        x, P = z[:, 0].copy(), S.E_z
-        for k in range(1, truth.shape[1]):
-            x, P = x @ F.T, F @ P @ F.T + S.E_x
-            inverse = np.linalg.inv((P + S.E_z)[part, part])
+        x = z[:, 0].copy()
+        for k, (inverse, gain) in enumerate(gains, 1):
+            x = x @ F.T
             nu = z[None, :, k] - x[:, None]
-            cost = np.einsum("tdi,ij,tdj->td", nu[..., part], inverse, nu[..., part])
-            taken = rule(cost)
-            K = P @ np.linalg.inv(P + S.E_z)
-            x = x + np.stack([nu[t, d] for t, d in enumerate(taken)]) @ K.T
-            P = P - K @ P
+            own = nu[..., part]
+            taken = rule(np.sum((own @ inverse) * own, axis=-1))
+            x = x + nu[range(len(x)), taken] @ gain
         nearest = np.linalg.norm((x[:, None] - truth[:, -1])[..., ::2], axis=-1).argmin(axis=1)
         exchanged.append(nearest.tolist() == [1, 0])
         lost.append(nearest[0] == nearest[1])

@@ -127,7 +127,8 @@ def test_the_others_have_every_operation_of_the_first_algorithm_and_more():
 def test_one_run_of_the_sweep_has_the_errors_of_a_filter_written_anew():
     """Path 2 at 20 dB, and the second sensor 10 dB below the first, as the file has it."""
     path, q, window = system.velocity_path("path 2"), 30, 64
-    cell = fusion_sweep.sweep_cell("path 2", 20, system.study_table(), runs=1)
+    table = system.WindowTable([0, 10], [0, 20], [8, window], np.eye(2) + np.ones((2, 2, 2)))
+    cell = fusion_sweep.sweep_cell("path 2", 20, table, runs=1)  # looked at without a choice
     rng = np.random.default_rng([3, 1, 2, 20])
     x, levels = fusion_sweep._records(path, 20, rng.spawn(1))
     np.testing.assert_array_equal(levels, [20, 20, 10])
