@@ -1,9 +1,9 @@
 """What holds for the figures of every module."""
 
 import re
-from itertools import combinations
 
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
@@ -67,12 +67,11 @@ def small(figure):
 
 def overlaps(figure):
     """Return the pairs of texts that lie on each other."""
-    texts = [(text.get_text(), box) for text, box in _texts(figure)]
-    return [
-        (one, other)
-        for (one, a), (other, b) in combinations(texts, 2)
-        if (common := Bbox.intersection(a, b)) and min(common.width, common.height) > SLACK
-    ]
+    found = _texts(figure)
+    ends = np.array([box.extents for _, box in found]).reshape(-1, 2, 2)
+    common = np.minimum(ends[:, None, 1], ends[:, 1]) - np.maximum(ends[:, None, 0], ends[:, 0])
+    pairs = np.argwhere(np.triu((common > SLACK).all(axis=-1), 1))
+    return [(found[i][0].get_text(), found[j][0].get_text()) for i, j in pairs]
 
 
 def covered(figure):
