@@ -5,11 +5,18 @@ import re
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb, to_rgba_array
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from dopplerlib.figures.style import PUBLISHED
+
 SMALLEST = 8  # points: 12 px on a page that shows a figure of seven inches at full width
 SLACK = 2  # px: boxes of letters have air around them
+NEAR = 12  # px: a mark this close above or beside a legend reads as one of its entries
+PALE = 2.2  # contrast below which letters on white are hard to read, even beside a bold line
+# Whose a curve in the color of what is published may be.
+_THEIRS = re.compile(r"\b(publish|paper|thesis|report|document|Table|Fig|Eq)")
 
 # What a label of a quantity without a unit speaks of.
 _PURE = (
@@ -31,7 +38,7 @@ def check_figures(module, figures, *, made_up=()):
     }
     assert public == set(figures)
     for name, figure in figures.items():
-        assert figure.get_figwidth() <= 7, name
+        assert figure.get_figwidth() == 7, name  # all pages show it equally large: so do letters
         figure.draw_without_rendering()
         assert overlaps(figure) == [], name
         assert (covered(figure) != []) == (name in made_up), name
@@ -65,6 +72,31 @@ def small(figure):
     ]
 
 
+def pale(figure):
+    """Return the texts that hardly stand out from the white of the page."""
+
+    def contrast(color):
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color[:3]]
+        return 1.05 / (np.dot(linear, [0.2126, 0.7152, 0.0722]) + 0.05)
+
+    texts = [text for text in figure.findobj(Text) if text.get_text().strip()]
+    levels = {text.get_text(): contrast(to_rgb(text.get_color())) for text in texts}
+    return [text for text, level in levels.items() if 1 < level < PALE]  # white is on something
+
+
+def check_colors(figure):
+    """Fail if something has the color of what is published, and the figure names no document."""
+    artists = [artist for ax in figure.axes for artist in (*ax.lines, *ax.collections, *ax.patches)]
+    colors = [
+        np.atleast_2d(to_rgba_array(getattr(artist, f"get_{part}")()))
+        for artist in artists
+        for part in ("color", "edgecolor", "facecolor")
+        if hasattr(artist, f"get_{part}")
+    ]
+    theirs = any((to_rgb(PUBLISHED) == one[:, :3]).all(axis=1).any() for one in colors if one.size)
+    assert not theirs or any(_THEIRS.search(text.get_text()) for text in figure.findobj(Text))
+
+
 def overlaps(figure):
     """Return the pairs of texts that lie on each other."""
     found = _texts(figure)
@@ -83,11 +115,14 @@ def covered(figure):
         box = Bbox.intersection(legend.get_window_extent().padded(-SLACK), ax.bbox)
         if box is None:
             continue
+        near = legend.get_window_extent().padded(NEAR)
         for line in ax.lines:
             path = line.get_path().transformed(line.get_transform())
             joined = line.get_linestyle() != "None"
             meets = path.intersects_bbox(box, filled=False) if joined else False
-            if line.get_visible() and (meets or box.count_contains(path.vertices)):
+            alone = not joined and len(path.vertices) == 1  # it looks like an entry
+            area = near if alone else box
+            if line.get_visible() and (meets or area.count_contains(path.vertices)):
                 found.append(line.get_label())
     return found
 

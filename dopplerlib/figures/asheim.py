@@ -9,8 +9,11 @@ from matplotlib.patches import Ellipse, FancyArrowPatch, FancyBboxPatch, Rectang
 from .._hints import Array, Booleans
 from .style import BOUND, MEASURED, ORANGE, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, drawing
 
+# A filter of one radar has one look in all figures.
+_WITH_RATE = {"range only": (ORANGE, "--"), "range and rate": (OURS, "-")}
 
-@drawing(5.2, 4.4)
+
+@drawing(7.0, 4.0)
 def geometry(figure: Figure, target: Array, sensors: Array) -> None:
     """Draw two radars, a target, and what each radar measures (Fig 2.1).
 
@@ -35,7 +38,7 @@ def geometry(figure: Figure, target: Array, sensors: Array) -> None:
     ax.plot(*target[:2], "s", color=TRUTH, ms=9)
     ax.annotate("target", target[:2], (12, -4), textcoords="offset points")
     ax.axhline(0, color=BOUND, lw=0.8)
-    ax.set(xlabel="x (m)", ylabel="y (m)", xlim=(-2.6, 3.4), ylim=(-0.6, 3.9), aspect="equal")
+    ax.set(xlabel="x (m)", ylabel="y (m)", xlim=(-4.2, 4.4), ylim=(-0.6, 3.9), aspect="equal")
 
 
 @drawing(7.0, 2.2)
@@ -48,8 +51,8 @@ def system_path(figure: Figure) -> None:
         ax.text(0.1, y + 0.4, f"$d_{n}, v_{n}$", va="center", color=SENSOR, fontsize=12)
         for x, text in ((1.3, "gate"), (3.8, "nearest\nneighbor"), (6.3, "Kalman\nfilter")):
             _block(ax, x, y, text)
-        for left in (0.85, 3.3, 5.8):
-            ax.add_patch(_arrow((left, y + 0.4), (left + 0.42, y + 0.4)))
+        for left, right in ((0.95, 1.25), (3.27, 3.75), (5.77, 6.25)):
+            ax.add_patch(_arrow((left, y + 0.4), (right, y + 0.4)))
         ax.add_patch(_arrow((8.3, y + 0.4), (8.95, 1.75 if n == 1 else 1.45)))
     _block(ax, 9.0, 1.2, "circles\nmeet")
     ax.add_patch(_arrow((11.0, 1.6), (11.45, 1.6)))
@@ -91,7 +94,8 @@ def tracks(
         ax.plot(*truth.T, color=TRUTH, label="true")
         ax.plot(*sensors.T, "o", color=SENSOR, label="radars")
         ax.plot(*truth[-1], "s", color=TRUTH, ms=5)
-        ax.set(xlabel="x (m)", ylabel="y (m)", title=title, aspect="equal")
+        ax.set(xlabel="x (m)", ylabel="y (m)", title=title)
+        ax.set_aspect("equal", adjustable="datalim")  # panels of one height
     axes[-1].legend(loc="lower left")
 
 
@@ -146,7 +150,8 @@ def one_range(
     for ax, at in ((whole, slice(None)), (part, near)):
         ax.plot(time[at], measured[at], color=MEASURED, lw=0.9, label="measured")
         ax.plot(time[at], truth[at], color=TRUTH, label="true")
-        for (label, d), (color, ls) in zip(estimates.items(), VARIANTS, strict=False):
+        for label, d in estimates.items():
+            color, ls = _WITH_RATE.get(label, VARIANTS[0])
             ax.plot(time[at], d[at], color=color, ls=ls, label=label)
         ax.set(xlabel="time (s)", ylabel="range (m)")
     whole.axvspan(*zoom, color=BOUND, alpha=0.25, lw=0)
@@ -162,9 +167,8 @@ def with_without(figure: Figure, time: Array, errors: dict[str, dict[str, Array]
     """
     axes = figure.subplots(1, len(errors), sharey=True, squeeze=False)[0]
     for ax, (title, series) in zip(axes, errors.items(), strict=True):
-        for (label, error), color, ls in zip(
-            series.items(), (ORANGE, OURS, SENSOR), ("--", "-", "-."), strict=False
-        ):
+        for label, error in series.items():
+            color, ls = _WITH_RATE[label]
             ax.plot(time[::5], np.abs(error[0, ::5]), color=color, lw=0.6)
             rms = np.sqrt(np.nanmean(error**2, axis=0))
             ax.plot(time, rms, color=color, ls=ls, lw=2, label=f"{label}, {len(error)} runs")
@@ -173,7 +177,7 @@ def with_without(figure: Figure, time: Array, errors: dict[str, dict[str, Array]
     axes[0].set_ylabel("absolute range error (m)")
 
 
-@drawing(7.0, 2.9)
+@drawing(7.0, 3.3)
 def gates(
     figure: Figure,
     predictions: dict[str, tuple[Array, Array]],
@@ -203,12 +207,12 @@ def gates(
         if inside.any():
             nearest = d[inside][np.argmin(nis[inside])]
             ax.plot(*nearest, "o", mfc="none", mec=TRUTH, ms=11, label="nearest")
-        ax.plot(0, 0, "+", color=TRUTH, ms=10, mew=1.6)
+        ax.plot(0, 0, "+", color=TRUTH, ms=10, mew=1.6, label="prediction")
         ax.set(title=title, xlabel="range innovation (m)")
         ax.set(xlim=(-1.7, 1.7), ylim=(-1.2, 1.2))
     axes[0].set_ylabel("range-rate innovation (m/s)")
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=5, fontsize=8.5)
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
 
 
 @drawing(7.0, 2.9)
@@ -229,15 +233,14 @@ def radar_record(
     zooms: Time intervals of the second and the third panel in s.
     """
     axes = figure.subplots(1, 3)
-    titles = "whole record", "closer", "closer still"
-    for ax, zoom, title in zip(axes, [(time[0], time[-1]), *zooms], titles, strict=True):
+    for ax, zoom in zip(axes, [(time[0], time[-1]), *zooms], strict=True):
         at = (time >= zoom[0]) & (time <= zoom[1])
         ax.plot(time[at], measured[at], color=MEASURED, lw=0.7, label="measured")
         out = at & ~updated
         ax.plot(time[out], measured[out], "x", color=ORANGE, ms=3.5, label="outside the gate")
         ax.plot(time[at], truth[at], color=TRUTH, ls="--", label="true")
         ax.plot(time[at], estimate[at], color=OURS, label="filtered")
-        ax.set(xlabel="time (s)", title=title)
+        ax.set(xlabel="time (s)", title=f"{zoom[0]:.0f} to {zoom[1]:.0f} s")
     axes[0].set_ylabel("range (m)")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
 

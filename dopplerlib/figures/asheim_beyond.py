@@ -8,7 +8,8 @@ from matplotlib.patches import Ellipse
 
 from .._hints import Array
 from ..evaluation.intervals import ConfidenceInterval
-from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, drawing, plain_log_ticks
+from .asheim_two import TRACKERS
+from .style import BOUND, OURS, SENSOR, TRUTH, VARIANTS, drawing, looks, plain_log_ticks
 
 
 @drawing(7.0, 7.2)
@@ -72,8 +73,8 @@ def consistency(
     axes = figure.subplots(1, len(panels), squeeze=False)[0]
     for ax, (title, series), bounds in zip(axes, panels.items(), interval, strict=True):
         ax.axhspan(*bounds, color=BOUND, alpha=0.3, lw=0, label="consistent, 95 %")
-        for (label, values), (color, ls) in zip(series.items(), VARIANTS, strict=False):
-            ax.plot(time, values, color=color, ls=ls, lw=1.2, label=label)
+        for label, (color, ls, _) in looks(series, TRACKERS).items():
+            ax.plot(time, series[label], color=color, ls=ls, lw=1.2, label=label)
         ax.set(title=title, xlabel="time (s)", yscale="log")
         ax.legend(fontsize=8.5)
     axes[0].set_ylabel("average / degrees of freedom")
@@ -89,7 +90,7 @@ def reach(figure: Figure, results: dict[str, dict[str, ConfidenceInterval]]) -> 
     ax = figure.subplots()
     labels = list(next(iter(results.values())))
     edge = 7.2
-    styles = dict(zip(labels, ((ORANGE, "s"), (PINK, "^"), (OURS, "o")), strict=True))
+    styles = {label: (color, mark) for label, (color, _, mark) in looks(labels, TRACKERS).items()}
     for row, series in enumerate(results.values()):
         for i, (label, value) in enumerate(series.items()):
             y = row + 0.22 * (i - (len(labels) - 1) / 2)
@@ -102,10 +103,10 @@ def reach(figure: Figure, results: dict[str, dict[str, ConfidenceInterval]]) -> 
     ax.set_yticks(range(len(results)), results)
     ax.set(xlabel="usable range from the origin (m)", xlim=(4.4, 7.4))
     ax.set_ylim(len(results) - 0.5, -0.5)
-    figure.legend(loc="outside lower center", ncols=3, fontsize=8.5)
+    figure.legend(loc="outside lower center", ncols=3)
 
 
-@drawing(6.0, 3.2)
+@drawing(7.0, 3.3)
 def sweep(
     figure: Figure, values: Array, errors: dict[str, Sequence[ConfidenceInterval]], xlabel: str
 ) -> None:
@@ -116,10 +117,11 @@ def sweep(
     xlabel: Name and unit of the setting.
     """
     ax = figure.subplots()
-    for (label, found), (color, ls) in zip(errors.items(), VARIANTS, strict=False):
+    for label, (color, ls, mark) in looks(errors, TRACKERS).items():
+        found = errors[label]
         low, middle, high = zip(*((e.low, e.value, e.high) for e in found), strict=True)
-        ax.plot(values, middle, color=color, ls=ls, marker="o", ms=4, label=label)
+        ax.plot(values, middle, color=color, ls=ls, marker=mark, ms=5, label=label)
         ax.fill_between(values, low, high, color=color, alpha=0.2, lw=0)
     ax.set(xlabel=xlabel, ylabel="RMS position error (m)", yscale="log")
     plain_log_ticks(ax.yaxis)
-    ax.legend(fontsize=9)
+    ax.legend()

@@ -50,7 +50,7 @@ def records(
     figure.legend(handles, labels, loc="outside lower center", ncols=4)
 
 
-@drawing(5.0, 4.6)
+@drawing(7.0, 3.2)
 def positions(figure: Figure, truth: Array, raw: Array, estimate: Array, sensors: Array) -> None:
     """Draw bilaterated positions in the plane (Fig 6.4(c)).
 
@@ -58,13 +58,18 @@ def positions(figure: Figure, truth: Array, raw: Array, estimate: Array, sensors
     sensors (2, 2): Positions of the radars in m.
     """
     ax = figure.subplots()
-    ax.plot(*raw.T, "o", mfc="none", mec=MEASURED, ms=5, label="detections, bilaterated")
-    ax.plot(*estimate.T, "+", color=OURS, ms=7, mew=1.5, label="filtered, bilaterated")
-    ax.plot(*truth.T, color=TRUTH, ls="--", label="true")
-    ax.plot(*sensors.T, "o", color=SENSOR, ms=7)
-    ax.set(title=f"{_LABEL}: position from both radars", xlabel="x (m)", ylabel="y (m)")
-    ax.set(xlim=(-3, 3), ylim=(-0.3, 6.2))
-    ax.legend(loc="lower left", fontsize=8.5)
+    across, away = 0, 1
+    for xy, look in (
+        (raw, {"marker": "o", "mfc": "none", "mec": MEASURED, "ls": "", "ms": 5,
+               "label": "detections, bilaterated"}),
+        (estimate, {"marker": "+", "color": OURS, "ls": "", "ms": 7, "mew": 1.5,
+                    "label": "filtered, bilaterated"}),
+        (truth, {"color": TRUTH, "ls": "--", "label": "true"}),
+        (sensors, {"marker": "o", "color": SENSOR, "ls": "", "ms": 7, "label": "radars"}),
+    ):  # fmt: skip
+        ax.plot(xy[:, away], xy[:, across], **look)
+    ax.set(title=f"{_LABEL}: position from both radars", xlabel="y (m)", ylabel="x (m)")
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=4)
 
 
 @drawing(7.0, 3.2)

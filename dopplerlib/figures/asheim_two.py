@@ -6,7 +6,19 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._hints import Array
-from .style import BOUND, MEASURED, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, drawing
+from .style import BOUND, MEASURED, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, drawing, looks
+
+# Color, line and mark of a tracker by the first of these words in its label, in all figures.
+TRACKERS = {
+    "measured": (MEASURED, "-", "."),
+    "one filter": (OURS, "-", "o"),
+    "without its gate": (OURS, "-", "o"),
+    "thesis": (ORANGE, "--", "s"),
+    "code": (ORANGE, "--", "s"),
+    "apart": (PINK, "-.", "^"),
+    "bilaterate": (PINK, "-.", "^"),
+    "modern": (PINK, "-.", "^"),
+}
 
 
 @drawing(7.0, 3.1)
@@ -40,7 +52,8 @@ def error_areas(
         ax.plot(*p, "*", color=TRUTH, ms=9)
         ax.set(title=title, xlabel="x (m)")
     axes[0].plot(*sensors.T, "o", color=SENSOR)
-    axes[0].set(ylabel="y (m)", xlim=(-5, 5), ylim=(0, 5.4), aspect="equal")
+    axes[0].set(ylabel="y (m)", xlim=(-5, 5), ylim=(-0.5, 5.4), aspect="equal")
+    axes[1].set_ylabel("y (m)")
     reach = 1.25 * np.abs(areas[-1] - p).max(axis=0)
     for ax in axes[1:]:
         ax.set(xlim=p[0] + reach[0] * np.array([-1, 1]), ylim=p[1] + reach[1] * np.array([-1, 1]))
@@ -125,14 +138,12 @@ def error_over_distance(
     published: Usable range in m that the thesis reports.
     """
     ax = figure.subplots()
-    styles = [(MEASURED, "-"), (OURS, "-"), (ORANGE, "--"), (SENSOR, "-."), (PINK, ":"),
-              (TRUTH, (0, (6, 2)))]  # fmt: skip
-    for (label, error), (color, ls) in zip(errors.items(), styles, strict=False):
-        rms = np.sqrt(np.nanmean(np.square(error), axis=0))
+    for label, (color, ls, _) in looks(errors, TRACKERS).items():
+        rms = np.sqrt(np.nanmean(np.square(errors[label]), axis=0))
         ax.plot(distance, rms, color=color, ls=ls, label=label)
     ax.axhline(limit, color=BOUND, lw=1.0)
     if published is not None:
         ax.axvline(published, color=PUBLISHED, ls=":", label="usable range in the thesis")
     ax.set(xlabel="distance from the origin (m)", ylabel="RMS position error (m)")
     ax.set(yscale="log", ylim=(1e-3, 100))
-    ax.legend(loc="upper left", fontsize=9)
+    ax.legend(loc="upper left")

@@ -5,9 +5,9 @@ from matplotlib.figure import Figure
 
 from .._hints import Array, Booleans, Positive
 from ..evaluation.intervals import ConfidenceInterval
-from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, TRUTH, VARIANTS, drawing, plain_log_ticks
+from .style import BOUND, ORANGE, OURS, PINK, TRUTH, VARIANTS, drawing, plain_log_ticks
 
-_MARKERS = ("o", TRUTH), ("s", PUBLISHED), ("^", BOUND)
+_MARKERS = ("o", TRUTH), ("s", ORANGE), ("^", BOUND)
 
 
 @drawing(7.0, 4.2)
@@ -112,7 +112,7 @@ def memory(figure: Figure, results: dict[str, Positive], most: dict[str, Positiv
     rows = range(len(results))
     ax.hlines(rows, list(results.values()), list(most.values()), color=BOUND, lw=3)
     ax.plot(list(results.values()), rows, "|", color=TRUTH, ms=14, mew=2, label="results")
-    ax.plot(list(most.values()), rows, "o", color=PUBLISHED, ms=5, label="at the most")
+    ax.plot(list(most.values()), rows, "o", color=ORANGE, ms=5, label="at the most")
     ax.set(xlabel="memory of a step and run (byte)", xscale="log", ylim=(len(rows) - 0.5, -0.5))
     ax.set_yticks(rows, list(results))
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=2)

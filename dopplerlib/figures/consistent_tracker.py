@@ -19,6 +19,15 @@ STYLES = (
     (TRUTH, ":"),
     (BOUND, "-"),
 )
+# Settings of one tracker: right, two of sigma_f, two of sigma_a, and another prior.
+_SETTINGS = (
+    (OURS, "-"),
+    (ORANGE, "--"),
+    (ORANGE, "-."),
+    (PINK, "--"),
+    (PINK, ":"),
+    (BOUND, "-"),
+)
 _MEAN, _MEDIAN = 6.0, 5.348  # of chi-square with six degrees of freedom
 _FAINTEST = 0.12  # opacity of a Gaussian of no weight
 
@@ -131,7 +140,7 @@ def wrong_settings(figure: Figure, found: dict[str, ErrorSummary]) -> None:
     found: Statistics by what the tracker assumes; the first one as the truths are.
     """
     left, right = figure.subplots(1, 2)
-    for (label, one), (color, ls) in zip(found.items(), STYLES, strict=False):
+    for (label, one), (color, ls) in zip(found.items(), _SETTINGS, strict=False):
         left.plot(one.time, one.nees, color=color, ls=ls, label=label)
         right.plot(one.time, one.position / one.position_bound, color=color, ls=ls)
     left.axhline(6, color=BOUND, lw=0.8)

@@ -57,7 +57,7 @@ def tangent(figure: Figure, step: Array, shift: Array, line: Array, sigma_f: flo
     right.axhline(sigma_f, color=BOUND, ls=":", label="noise, one standard deviation")
     right.set(yscale="log", ylabel="absolute value (Hz)", ylim=(sigma_f / 100, 30 * missed.max()))
     for ax, place in ((left, "upper right"), (right, "upper center")):
-        ax.set_xlabel("distance (standard deviations of the prior)")
+        ax.set_xlabel("distance (standard deviations)")
         ax.legend(loc=place)
 
 

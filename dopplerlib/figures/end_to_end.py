@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from .._hints import Array
 from ..evaluation.intervals import ConfidenceInterval
-from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, drawing
+from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, drawing
 
 
 @drawing(7.0, 2.6)
@@ -26,9 +26,9 @@ def when(figure: Figure, delay: float, window: float) -> None:
         ax.barh(y, w, left=left, height=0.5, color=color, alpha=0.25, ec=color)
         ax.text(left - 0.4, y, text, ha="right", va="center", color=color)
     ax.plot([-w / 2 - d] * 2, [0.15, 2.25], color=SENSOR, lw=1.6)
-    ax.plot([0, 0], [0.15, 2.25], color=PUBLISHED, lw=1.6, ls="--")
+    ax.plot([0, 0], [0.15, 2.25], color=TRUTH, lw=1.6, ls="--")
     ax.text(-w / 2 - d, 2.36, "the shift belongs here", ha="center", color=SENSOR)
-    ax.text(0.3, 2.36, "now: it is known", ha="center", color=PUBLISHED)
+    ax.text(0.3, 2.36, "now: it is known", ha="center", color=TRUTH)
     for left, right, y, text in (
         (-w / 2, 0, 0.25, "half a window"),
         (-w / 2 - d, -w / 2, 0.25, "delay"),

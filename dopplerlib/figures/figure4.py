@@ -35,7 +35,7 @@ def errors_by_noise(
     figure.axes[0].legend(loc="upper left")
 
 
-@drawing(7, 3.2)
+@drawing(7, 3.5)
 def mean_and_median(
     figure: Figure, results: dict[str, tuple[Array, Array]], bound: Array, variance: Array
 ) -> None:
@@ -47,15 +47,17 @@ def mean_and_median(
     """
     sigma_f = np.sqrt(variance)
     ax = figure.subplots()
-    for (label, pair), color in zip(results.items(), (OURS, ORANGE, PINK), strict=False):
+    looks = ((OURS, "o"), (ORANGE, "s"), (PINK, "D"))
+    for (label, pair), (color, marker) in zip(results.items(), looks, strict=False):
         for values, style, name in zip(pair, ("-", ":"), ("mean", "median"), strict=True):
-            ax.plot(variance, values.mean(axis=1) / sigma_f, style, color=color, marker="o",
-                    ms=3, label=f"{label}: {name}")  # fmt: skip
+            ax.plot(variance, values.mean(axis=1) / sigma_f, style, color=color, marker=marker,
+                    ms=5, mfc=color if name == "mean" else "white",
+                    label=f"{label}: {name}")  # fmt: skip
     ax.plot(variance, bound / sigma_f, "--", color=BOUND, label="mean at the CRLB")
     ax.set(xscale="log", xlabel="variance of the noise (Hz²)",
            ylabel="position error / $\\sigma_f$ (m/Hz)")  # fmt: skip
     ax.set_ylim(bottom=0)
-    figure.legend(loc="outside upper center", ncols=3)
+    figure.legend(loc="outside upper center", ncols=2)
 
 
 @drawing(7, 3.6)

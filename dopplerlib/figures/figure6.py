@@ -10,7 +10,7 @@ from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, drawing
 _AXES = ("x", "y", "z")
 
 
-@drawing(7.0, 4.6)
+@drawing(7.0, 5.0)
 def scene(
     figure: Figure,
     result: ExampleRuns,
@@ -18,28 +18,27 @@ def scene(
     array: RadarArray,
     run: int = 0,
 ) -> None:
-    """Draw the paper's 3-D scene: sensors, true path, estimates of one run, published estimates.
+    """Draw the paper's scene from above and from the side: sensors, path, estimates of two runs.
 
     result: Our runs.
     published: The digitized figure.
     array: The sensors.
     run: Which run to draw.
     """
-    ax = figure.add_subplot(projection="3d", computed_zorder=False)
     estimate = result.track.x[run, ::20, :3]
-    ax.plot(*result.truth[:, :3].T, color=TRUTH, label="true path")
-    ax.plot(*published.path.T, "s", color=PUBLISHED, ms=3.5, label="published estimates")
-    ax.plot(*estimate.T, "o", color=OURS, ms=3, label="our estimates")
-    ax.plot(*array.positions.T, "^", color=SENSOR, ms=8, label="sensors")
-    ring = np.linspace(0, 2 * np.pi, 100)
-    radius = np.hypot(*array.positions[0, 1:])
-    ax.plot(0 * ring, radius * np.cos(ring), radius * np.sin(ring), color=SENSOR, lw=0.8)
-    ax.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
-    ax.set(xlim=(0, 1), ylim=(-0.3, 0.3), zlim=(-0.3, 0.3))
-    ax.set_box_aspect((1, 0.6, 0.6), zoom=0.95)
-    # The paper's view: MATLAB counts azimuth from another axis than matplotlib does.
-    ax.view_init(elev=30, azim=120)
-    figure.legend(*ax.get_legend_handles_labels(), loc="upper right")
+    axes = figure.subplots(2, sharex=True, sharey=True)
+    for i, (ax, title) in enumerate(zip(axes, ("from above", "from the side"), strict=True), 1):
+        shown = [0, i]
+        ax.plot(*array.positions[:, shown].T, "^", color=SENSOR, ms=8, label="sensors")
+        ax.plot(*result.truth[:, shown].T, color=TRUTH, label="true path")
+        ax.plot(*estimate[:, shown].T, "o", color=OURS, ms=3.5, label="our estimates")
+        ax.plot(
+            *published.path[:, shown].T, "s", mfc="none", mec=PUBLISHED, ms=4.5,
+            label="published estimates",
+        )  # fmt: skip
+        ax.set(title=title, ylabel=f"{_AXES[i]} (m)", ylim=(-0.26, 0.26))
+    axes[-1].set(xlabel="x (m)", xlim=(-0.03, 1))
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
 
 
 @drawing(7.0, 5.2)
@@ -52,7 +51,10 @@ def errors(figure: Figure, result: ExampleRuns, published: PublishedFigure6, run
     """
     axes = figure.subplots(3, sharex=True, sharey=True)
     for i, (ax, name) in enumerate(zip(axes, _AXES, strict=True)):
-        ax.plot(published.time, 100 * published.error[:, i], color=PUBLISHED, label="published")
+        ax.plot(
+            published.time, 100 * published.error[:, i], "-D", color=PUBLISHED, lw=1, ms=5,
+            markevery=50, mec="white", label="published",
+        )  # fmt: skip
         ax.plot(result.time, 100 * result.error[run, :, i], color=OURS, label="ours, one run")
         ax.set(ylabel=f"error of {name} (cm)", ylim=(0, 16))
     axes[0].legend(loc="upper right")
@@ -114,7 +116,7 @@ def nis(
         for bound in interval:
             ax.axhline(bound, color=BOUND, ls="--", lw=1)
         ax.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
-        ax.set(ylabel="NIS", ylim=(0, 30))
+        ax.set(ylabel="NIS", yscale="log")
     axes[-1].set(xlabel="time (s)", xlim=(0, 1))
 
 

@@ -171,7 +171,7 @@ def iso_doppler_cones(
         space.plot(*view(s), "o", color=color, ms=7, mec="white")
         plane.plot(cut[n, :, 1], cut[n, :, 2], color=color, lw=1.4, label=f"{n + 1}")
         far = cut[n, 90]
-        plane.annotate(f"{n + 1}", far[1:], (0, 0), color=color, bbox=HALO, **LABEL)
+        plane.annotate(f"{n + 1}", far[1:], (0, 0), color=TRUTH, bbox=HALO, **LABEL)
     target = view(x[:3])
     space.plot(*target, "s", color=TRUTH, ms=7, zorder=5)
     step = view(x[:3] + 0.3 * x[3:]) - target

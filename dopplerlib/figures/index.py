@@ -75,7 +75,7 @@ def _draw_scene(ax, scenario, tracks, start, view):
     ax.plot(*view(start[:3]), "o", color=PUBLISHED, ms=6.5, mec="white", zorder=5)
     for text, point, place, color in (
         ("true path", view(path[0]), (48, -44), TRUTH),
-        ("start of every estimate", view(start[:3]), (42, 56), PUBLISHED),
+        ("start of all runs (paper)", view(start[:3]), (42, 56), PUBLISHED),
     ):
         ax.annotate(text, point, place, color=color, textcoords="offset points",
                     arrowprops={"arrowstyle": "-", "color": color, "lw": 0.8})  # fmt: skip
@@ -98,7 +98,7 @@ def _draw_ring(ax, array, view):
     for n, (s, color) in enumerate(zip(array.positions, sensor_colors(len(array)), strict=True)):
         outward = view(s) / np.linalg.norm(view(s))
         ax.plot(*view(s), "o", color=color, ms=9, mec="white")
-        ax.annotate(str(n + 1), view(s), 13 * outward, color=color, textcoords="offset points",
+        ax.annotate(str(n + 1), view(s), 13 * outward, color=TRUTH, textcoords="offset points",
                     ha="center", va="center")  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from .._hints import Array
 from .._typing import ComplexArray
 from ..evaluation.frequency_benchmark import FrequencyBenchmark
 from ..evaluation.intervals import ConfidenceInterval
-from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, drawing
+from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, TRUTH, drawing
 
 _STYLES = (
     (OURS, "-", "o"),
@@ -22,6 +22,21 @@ _STYLES = (
     ("#8C6D1F", "-.", "+"),
     ("#7A3E9D", ":", "*"),
 )
+# An estimator has one look in all figures; two with the same are never in one.
+_ESTIMATORS = {
+    "highest bin": _STYLES[0],
+    "parabola, padded": _STYLES[1],
+    "Jacobsen": _STYLES[2],
+    "Quinn 2": _STYLES[3],
+    "parabola": _STYLES[3],
+    "Aboutanios-Mulgrew": _STYLES[4],
+    "maximum likelihood": _STYLES[5],
+    "log parabola": _STYLES[5],
+    "Kay": _STYLES[6],
+    "log parabola, padded": _STYLES[6],
+    "pulse pair": _STYLES[7],
+    "Candan": _STYLES[7],
+}
 
 
 @drawing(7.0, 2.3)
@@ -146,14 +161,14 @@ def impairments(figure: Figure, f: Array, spectra: dict[str, Array], truth: floa
     spectra (M,): Powers by label, relative to the echo.
     truth: True frequency in Hz.
     """
-    styles = ((PUBLISHED, "-"), (ORANGE, "--"), (OURS, "-"))
+    styles = ((MEASURED, "-"), (ORANGE, "--"), (OURS, "-"))
     ax = figure.subplots()
     for (label, power), (color, ls) in zip(spectra.items(), styles, strict=False):
         ax.plot(f, 10 * np.log10(power), color=color, ls=ls, lw=1.2, label=label)
     low, high = -62, 10 * np.log10(max(power.max() for power in spectra.values()))
     for place, text in ((0, "DC offset"), (truth, "echo"), (-truth, "image")):
         ax.text(place, high + 3, text, ha="center", color=TRUTH)
-        ax.axvline(place, color=BOUND, lw=0.8, ls=":", ymax=0.94)
+        ax.plot([place, place], [low, high + 2], color=BOUND, lw=0.8, ls=":")
     ax.set(xlabel="frequency (Hz)", ylabel="power (dB relative to the echo)", ylim=(low, high + 9))
     figure.legend(loc="outside upper center", ncols=3)
 
@@ -222,7 +237,8 @@ def threshold(
     top.plot(benchmark.snr_db, benchmark.bound, color=BOUND, lw=5, alpha=0.35, label="bound")
     top.plot(benchmark.snr_db, predicted, color=BOUND, lw=1.2, ls=":", label="bound with outliers")
     low.plot(benchmark.snr_db, law, color=BOUND, lw=1.2, ls=":")
-    for name, (color, ls, marker) in zip(names, _STYLES, strict=False):
+    for name in names:
+        color, ls, marker = _ESTIMATORS[name]
         look = {"color": color, "ls": ls, "marker": marker, "ms": 3.5, "lw": 1.2}
         _bars(top, benchmark.snr_db, benchmark.ratio[name], benchmark.bound, label=name, **look)
         seen = [k for k, e in enumerate(benchmark.outliers[name]) if e.value > 0]
@@ -245,7 +261,8 @@ def bias(figure: Figure, fraction: Array, biases: dict[str, Array]) -> None:
     biases (M,): Absolute errors without noise, in bins, by label.
     """
     ax = figure.subplots()
-    for (label, error), (color, ls, marker) in zip(biases.items(), _STYLES, strict=False):
+    for label, error in biases.items():
+        color, ls, marker = _ESTIMATORS[label]
         ax.plot(fraction, np.where(error > 1e-12, error, np.nan), color=color, ls=ls,
                 marker=marker, ms=3.5, markevery=8, lw=1.2, label=label)  # fmt: skip
     ax.set(
@@ -278,14 +295,15 @@ def best_window(
         _bars(ax, 1e3 * T, error, color=color, ls="", marker=marker, ms=4, label="measured")
         ax.plot(1e3 * best, np.interp(best, length, law), "*", color=color, ms=15, mec="white",
                 label="best window")  # fmt: skip
-    ax.axhline(limit, color=TRUTH, lw=1, ls=":", label=f"{limit:g} Hz")
+    ax.axhline(limit, color=TRUTH, lw=1, ls=":")
+    ax.text(1e3 * T[0], 1.05 * limit, f"{limit:g} Hz", va="bottom")
     ax.set(
         xscale="log", yscale="log", xlabel="length of the window (ms)",
         ylabel="RMS error (Hz)",
     )  # fmt: skip
     ax.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"])
     ax.tick_params(axis="x", which="minor", labelbottom=False)
-    figure.legend(loc="outside upper center", ncols=3)
+    figure.legend(loc="outside upper center", ncols=2)
 
 
 @drawing(7.0, 3.0)

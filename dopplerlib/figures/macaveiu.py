@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._hints import Array
-from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, drawing
+from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, VARIANTS, drawing
 
 
 @drawing(7.0, 4.4)
@@ -20,12 +20,12 @@ def sketches(figure: Figure) -> None:
     lfm.plot([0.06, 0.56, 1.06], [0.06, 1.06, 0.06], color=BOUND, ls="--")
     for n in range(10):
         ends = [n / 10, (n + 1) / 10]
-        fsk.plot(ends, [0.35 + 0.3 * (n % 2)] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
+        fsk.plot(ends, [0.35 + 0.3 * (n % 2)] * 2, color=(OURS, ORANGE)[n % 2], lw=2.5)
     slopes.plot([0, 0.25, 0.5, 0.75, 1], [0, 1, 0, 0.6, 0.3], color=OURS)
     for n in range(20):
         ends = [n / 20, (n + 1) / 20]
         height = (n // 2 - 0.5 * (n % 2)) / 11  # B half a step below A
-        mfsk.plot(ends, [height] * 2, color=(OURS, PUBLISHED)[n % 2], lw=2.5)
+        mfsk.plot(ends, [height] * 2, color=(OURS, ORANGE)[n % 2], lw=2.5)
     for n in range(8):
         rapid.plot([n / 8, (n + 1) / 8], [0, 1], color=OURS)
     titles = (
@@ -52,7 +52,7 @@ def pulses(
     left, right = figure.subplots(1, 2)
     left.plot(distance, np.abs(signal), color=OURS, lw=1)
     left.set(xlabel="range from the delay (m)", ylabel="amplitude of one pulse")
-    styles = ((OURS, "-"), (PUBLISHED, "--"), (ORANGE, "-."))
+    styles = VARIANTS
     for (label, power), (color, ls) in zip(doppler.items(), styles, strict=False):
         right.plot(v, power, color=color, ls=ls, label=label)
     right.set(xlabel="range rate (m/s)", ylabel="relative power (dB)", ylim=(-60, 22))
@@ -81,7 +81,7 @@ def ghosts(
                 name = f"chirp of {a * 149_896_229.0 / 1e9:+.1f} GHz/s" if i == 0 else None
                 ax.plot(r, (tone - a * r) / b, color=color, ls=ls, lw=1.1, label=name)
         ax.plot(*np.transpose(targets), "o", mfc="none", mec=TRUTH, ms=11, label="target")
-        ax.plot(*np.transpose(found), "x", color=PUBLISHED, mew=2, label="accepted")
+        ax.plot(*np.transpose(found), "x", color=TRUTH, mew=2, label="accepted")
         ax.set(title=title, xlabel="range (m)", xlim=reach, ylim=(-16, 16))
     axes[0].set_ylabel("range rate (m/s)")
     handles, labels = axes[-1].get_legend_handles_labels()
@@ -90,18 +90,24 @@ def ghosts(
 
 @drawing(7.0, 3.0)
 def solved(figure: Figure, cases: dict[str, Array], targets: dict[str, Array]) -> None:
-    """Draw solutions of the MFSK system for many records, beside the targets.
+    """Draw solutions of the MFSK system for many records near the targets; count the others.
 
     cases (..., 2): Ranges in m and range rates in m/s for each title.
     targets (targets, 2): The true ones.
     """
     axes = figure.subplots(1, len(cases), squeeze=False)[0]
     for ax, (title, found) in zip(axes, cases.items(), strict=True):
-        ax.plot(*found.reshape(-1, 2).T, ".", color=OURS, ms=3, alpha=0.6, label="solved")
-        ax.plot(*targets[title].T, "o", mfc="none", mec=TRUTH, ms=11, label="target")
-        ax.set(title=title, xlabel="range (m)")
+        found, true = found.reshape(-1, 2), targets[title]
+        space = np.maximum(np.ptp(true, axis=0), 1) / 2
+        low, high = true.min(axis=0) - space, true.max(axis=0) + space
+        outside = int(np.sum(np.any((found < low) | (found > high), axis=1)))
+        ax.plot(*found.T, ".", color=OURS, ms=3, alpha=0.6, label="solved")
+        ax.plot(*true.T, "o", mfc="none", mec=TRUTH, ms=11, label="target")
+        ax.set(title=title, xlabel="range (m)", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+        note = f"{outside} of {len(found)} outside"
+        ax.text(0.03, 0.04, note, transform=ax.transAxes, va="bottom", fontsize=9)
     axes[0].set_ylabel("range rate (m/s)")
-    axes[0].legend(loc="upper left")
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=2)
 
 
 @drawing(7.0, 3.6)
@@ -175,7 +181,7 @@ def scene(figure: Figure, stages: dict[str, dict[str, Array]], truth: Array) -> 
         named = False
         for label, xy in groups.items():
             if label.startswith("track"):
-                ax.plot(*xy.T, color=PUBLISHED, lw=1.6, label=None if named else "track")
+                ax.plot(*xy.T, color=PINK, lw=1.6, label=None if named else "track")
                 named = True
             else:
                 ax.plot(*xy.T, ".", ms=2, color=dots[label], alpha=0.5, label=label)

@@ -28,11 +28,12 @@ def side_by_side(
     limits: Limits of the y axis of the path in m.
     """
     left, right = figure.subplots(1, 2)
-    for (label, x), color in zip(tracks.items(), (OURS, PUBLISHED, ORANGE), strict=False):
+    looks = ((OURS, "-"), (ORANGE, "--"), (PUBLISHED, "-."))
+    for (label, x), (color, ls) in zip(tracks.items(), looks, strict=False):
         for i, one in enumerate(x[:10]):
             name = label if i == 0 else None
-            left.plot(one[:, 0], one[:, 2], color=color, lw=0.7, alpha=0.7, label=name)
-            right.plot(time, _KMH * one[:, 1], color=color, lw=0.7, alpha=0.7, label=name)
+            left.plot(one[:, 0], one[:, 2], color=color, ls=ls, lw=0.8, alpha=0.7, label=name)
+            right.plot(time, _KMH * one[:, 1], color=color, ls=ls, lw=0.8, alpha=0.7)
     left.plot(truth[:, 0], truth[:, 2], color=TRUTH, ls="--", label="truth")
     right.plot(time, _KMH * truth[:, 1], color=TRUTH, ls="--", label="truth")
     left.set(xlabel="x (m)", ylabel="y (m)")
@@ -116,7 +117,7 @@ def crossings(
     angles: In degrees.
     """
     left, right = figure.subplots(1, 2)
-    for one, color in zip(estimates, (OURS, PUBLISHED), strict=True):
+    for one, color in zip(estimates, (OURS, ORANGE), strict=True):
         left.plot(one[:, 0], one[:, 2], color=color, lw=1.3)
     for one in truth:
         left.plot(one[:, 0], one[:, 2], color=TRUTH, ls="--", lw=1)

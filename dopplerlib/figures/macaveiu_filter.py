@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from .._hints import Array
 from ..evaluation.intervals import ConfidenceInterval
 from ..systems.macaveiu2013 import AutomotiveSettings, VehicleRuns, decided_claims
-from .style import BOUND, ORANGE, OURS, PUBLISHED, TRUTH, VARIANTS, drawing, plain_log_ticks
+from .style import BOUND, ORANGE, OURS, PINK, TRUTH, VARIANTS, drawing, plain_log_ticks
 
 _KMH = 3.6  # km/h for each m/s
 _SETTINGS = {
@@ -32,7 +33,7 @@ def three_panels(figure: Figure, time: Array, runs: VehicleRuns, run: int = 0) -
     for ax, part in zip(axes, ((0, 2), (1,), (3,)), strict=True):
         if len(part) == 2:
             lines = [(one[:, 0], one[:, 2]) for one in (z, truth, x)]
-            ax.set(xlabel="x (m)", ylabel="y (m)", title="a")
+            ax.set(xlabel="x (m)", ylabel="y (m)", title="a: position")
             ax.margins(x=0.25)
         else:
             (i,) = part
@@ -41,7 +42,11 @@ def three_panels(figure: Figure, time: Array, runs: VehicleRuns, run: int = 0) -
             look = {"color": OURS, "alpha": 0.25, "lw": 0, "label": "95 % of all runs"}
             ax.fill_between(time[1:], *band, **look)
             name = {1: "$v_x$", 3: "$v_y$"}[i]
-            ax.set(xlabel="time (s)", ylabel=f"{name} (km/h)", title={1: "b", 3: "c"}[i])
+            ax.set(
+                xlabel="time (s)",
+                ylabel=f"{name} (km/h)",
+                title={1: "b: speed along x", 3: "c: speed along y"}[i],
+            )
             middle = (_KMH * truth[:, i].max() + _KMH * truth[:, i].min()) / 2
             half = max(5, 0.8 * _KMH * np.ptp(truth[:, i]))
             ax.set_ylim(middle - half, middle + half)
@@ -51,7 +56,7 @@ def three_panels(figure: Figure, time: Array, runs: VehicleRuns, run: int = 0) -
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
 
 
-@drawing(7.0, 6.0)
+@drawing(7.0, 5.2)
 def claim_map(
     figure: Figure,
     rows: tuple[str, Sequence[float]],
@@ -62,9 +67,10 @@ def claim_map(
     """Draw the percentage of runs in which each claim holds, over two settings.
 
     rows, columns: Name and values of a setting, as `regions.claim_map` takes them.
-    shares (3, rows, columns): Fraction of the runs for each claim, and the ends of its interval.
-    settings: Our choice, to be marked. A line surrounds the places in which a claim holds for sure;
-        where the runs are too few to tell, the place is hatched.
+    shares (3, rows, columns): Fraction of the runs for each claim, and the ends of its interval,
+        which decide: a line surrounds the places in which a claim holds for sure; where the runs
+        are too few to tell, the place is hatched.
+    settings: Our choice, to be marked.
     """
     (row, heights), (column, widths) = rows, columns
     x, y = widths.index(getattr(settings, column)), heights.index(getattr(settings, row))
@@ -74,10 +80,7 @@ def claim_map(
         verdict = decided_claims(share)
         for (i, j), value in np.ndenumerate(share[0]):
             color = "black" if value > 0.6 else "white"
-            middle = f"{100 * value:.0f}"
-            ends = f"{100 * share[1, i, j]:.0f}\N{EN DASH}{100 * share[2, i, j]:.0f}"
-            ax.text(j, i + 0.17, middle, ha="center", va="center", color=color, size=9)
-            ax.text(j, i - 0.23, ends, ha="center", va="center", color=color, size=8)
+            ax.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=color, size=9.5)
             if not verdict[i, j]:
                 undecided = Rectangle((j - 0.5, i - 0.5), 1, 1, fc="none", ec=color, lw=0)
                 undecided.set(hatch="////", alpha=0.4)
@@ -97,10 +100,13 @@ def claim_map(
 def _surround(ax, inside):
     """Draw the border between the places of an image that are inside and the others."""
     framed = np.pad(inside, 1)
-    for i, j in np.argwhere(framed[:, 1:] != framed[:, :-1]):
-        ax.plot([j - 0.5] * 2, [i - 1.5, i - 0.5], color=PUBLISHED, lw=2.5, clip_on=False)
-    for i, j in np.argwhere(framed[1:] != framed[:-1]):
-        ax.plot([j - 1.5, j - 0.5], [i - 0.5] * 2, color=PUBLISHED, lw=2.5, clip_on=False)
+    upright = np.argwhere(framed[:, 1:] != framed[:, :-1])
+    level = np.argwhere(framed[1:] != framed[:-1])
+    sides = [((j - 0.5, i - 1.5), (j - 0.5, i - 0.5)) for i, j in upright]
+    sides += [((j - 1.5, i - 0.5), (j - 0.5, i - 0.5)) for i, j in level]
+    for color, width in (("white", 4.5), (TRUTH, 2.2)):  # black on bright cells, a rim on dark ones
+        look = {"colors": color, "linewidths": width, "capstyle": "projecting", "zorder": 3}
+        ax.add_collection(LineCollection(sides, clip_on=False, **look), autolim=False)
 
 
 @drawing(7.0, 3.2)
@@ -119,7 +125,7 @@ def lags(
     measured: For some w, the mean error of position and speed in many runs.
     """
     for i, ax in enumerate(figure.subplots(1, 2)):
-        ax.plot(w, predicted[:, i], color=OURS, label="lag, predicted")
+        ax.plot(w, predicted[:, i], color=PINK, ls="-.", label="lag, predicted")
         ax.plot(w, noise[:, i], color=ORANGE, ls="--", label="noise, predicted")
         both = np.hypot(predicted, noise)[:, i]
         ax.plot(w, both, color=BOUND, ls=":", label="both")
@@ -127,7 +133,7 @@ def lags(
         middle = np.array([one.value for one in points])
         ends = np.array([[one.value - one.low, one.high - one.value] for one in points]).T
         ax.errorbar(
-            list(measured), middle, yerr=ends, fmt="o", color=PUBLISHED, ms=4, capsize=3,
+            list(measured), middle, yerr=ends, fmt="o", color=OURS, ms=4, capsize=3,
             label="mean error of the runs",
         )  # fmt: skip
         ax.set(xscale="log", yscale="log", xlabel="velocity step $w$ (m/s)")

@@ -10,7 +10,7 @@ from ..chain.track import IqTrack
 from ..evaluation.consistency import chi2_interval
 from ..model.doppler import doppler_shift
 from ..signal.spectrogram import Spectrogram
-from .style import BOUND, MEASURED, OURS, PUBLISHED, SENSOR, TRUTH, drawing, sensor_colors
+from .style import BOUND, MEASURED, ORANGE, OURS, SENSOR, TRUTH, drawing, sensor_colors
 
 _SPAN = 60  # dB, at most: what is fainter beside the loudest line is dark
 
@@ -152,7 +152,7 @@ def views(
         )  # fmt: skip
         if alarm is not None and np.isfinite(alarm.first):
             at = x[int(np.argmax(alarm.alarm))]
-            ax.plot(at[a], at[b], "X", color=PUBLISHED, ms=9, label="alarm")
+            ax.plot(at[a], at[b], "X", color=ORANGE, mec=TRUTH, ms=9, label="alarm")
         ax.set(xlabel="x (m)", ylabel=f"{'xyz'[b]} (m)", title=name)
         ax.set_aspect("equal", "datalim")
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)

@@ -64,7 +64,7 @@ def fixes(
     figure.legend(handles.values(), handles, loc="outside lower center", ncols=5)
 
 
-@drawing(6.0, 3.4)
+@drawing(7.0, 3.4)
 def noise(figure: Figure, seen: dict[str, tuple[Array, Array]], levels: dict[str, float]) -> None:
     """Draw the standard deviation of the residuals of each satellite over its C/N0.
 

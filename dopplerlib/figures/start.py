@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from .._hints import Array
 from ..model.radar_array import RadarArray
-from .style import BOUND, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, drawing
+from .style import BOUND, ORANGE, OURS, PUBLISHED, SENSOR, TRUTH, VARIANTS, drawing
 
 _LEVELS = (0, 1, 2, 3, 10, 30, 100, 300, 1000)
 
@@ -105,7 +105,7 @@ def errors_by_samples(
     ax.set_xticks(samples, labels=[f"{k}" for k in samples])
     ax.set_xticks([], minor=True)
     ax.set(xlabel="number of samples", ylabel="position error (m)")
-    ax.legend(loc="lower left")
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=3)
 
 
 @drawing()
@@ -209,12 +209,9 @@ def line_profiles(
     for (label, error), (mark, color) in zip(profiles.items(), marks, strict=True):
         ax.semilogy(axis, error, mark, color=color, ms=5, mec="white", label=label)
     ax.semilogy(axis, bound, color=OURS, label="bound across a line of sensors")
-    ax.axhline(lowest, color=TRUTH, lw=1, ls=":")
-    ax.annotate(
-        "lowest contour", (0, lowest), (0, 3), textcoords="offset points", ha="center", fontsize=9
-    )
+    ax.axhline(lowest, color=TRUTH, lw=1, ls=":", label="lowest contour")
     ax.set(xlabel="place on the line (m)", ylabel="position error (m)", ylim=(5e-3, 60))
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=2)
 
 
 @drawing(7, 3.6)
@@ -229,7 +226,7 @@ def wrong_windows(figure: Figure, panels: dict[str, dict[str, Array]]) -> None:
     for ax, (title, kinds) in zip(axes, panels.items(), strict=True):
         for i, (kind, found) in enumerate(kinds.items()):
             for (x, ratio, low, high), color, name in zip(
-                np.moveaxis(found, -1, 1), (OURS, PUBLISHED), ("robust", "plain"), strict=True
+                np.moveaxis(found, -1, 1), (OURS, ORANGE), ("robust", "plain"), strict=True
             ):
                 ax.errorbar(
                     100 * x + 0.4 * (i - 1), ratio, [ratio - low, high - ratio], color=color,

@@ -66,6 +66,21 @@ def drawing(width: float = 7.0, height: float = 4.0):
     return decorate
 
 
+def looks(labels, words):
+    """Return color, line and mark by label, so that a thing has one look in all figures.
+
+    labels: Of the curves of a figure.
+    words: Color, line and mark by word: the first word that is in a label decides. A second label
+        of the same color is dotted.
+    """
+    found, used = {}, set()
+    for label in labels:
+        color, line, mark = next(look for word, look in words.items() if word in label)
+        found[label] = (color, ":", "D") if color in used else (color, line, mark)
+        used.add(color)
+    return found
+
+
 def plain_log_ticks(axis):
     """Label 1, 2 and 5 times the powers of ten of a logarithmic axis with plain numbers.
 
@@ -145,7 +160,7 @@ def doppler_lines(ax, time, shifts, names=None):
             name,
             (time[-1], curve[-1]),
             (time[-1] + 0.05 * np.ptp(time), end),
-            color=color,
+            color=TRUTH,
             va="center",
             arrowprops={"arrowstyle": "-", "color": color, "lw": 0.6, "shrinkA": 0, "shrinkB": 0},
         )

@@ -20,7 +20,7 @@ def record(figure: Figure, time: Array, z: Array, shift: Array) -> None:
     for n, color in enumerate(sensor_colors(shift.shape[1])):
         ax.plot(time, shift[:, n], color=color)
         ax.annotate(
-            f"{n + 1}", (time[-1], shift[-1, n]), (1.04 * time[-1], ends[n]), color=color,
+            f"{n + 1}", (time[-1], shift[-1, n]), (1.04 * time[-1], ends[n]), color=TRUTH,
             va="center", arrowprops={"arrowstyle": "-", "color": color, "lw": 0.8},
         )  # fmt: skip
         zoom.plot(1e3 * time[:50], z[:50, n], ".", color=color, ms=4)
@@ -43,9 +43,8 @@ def approach(figure: Figure, time: Array, truth: Array, x: Array, run: int = 0) 
     band = np.percentile(impact, [2.5, 50, 97.5], axis=0)
     left, right = figure.subplots(1, 2)
     left.plot(time, truth[:, 0], color=TRUTH, ls="--", label="truth")
-    left.plot(time, x[run, :, 0], color=OURS, label="estimate, one run")
+    left.plot(time, x[run, :, 0], color=OURS, label="one run")
     left.set(xlabel="time (s)", ylabel="distance x (m)", ylim=(0, None))
-    left.legend()
     right.fill_between(
         time, band[0], band[2], color=OURS, alpha=0.25, lw=0, label=f"95 % of {len(x)} runs"
     )
@@ -53,4 +52,4 @@ def approach(figure: Figure, time: Array, truth: Array, x: Array, run: int = 0) 
     right.axhline(true_impact, color=TRUTH, ls="--", label="truth")
     right.set(xlabel="time (s)", ylabel="predicted time of impact (s)")
     right.set(ylim=(true_impact - 0.4, true_impact + 0.4))
-    right.legend()
+    figure.legend(*right.get_legend_handles_labels(), loc="outside upper center", ncols=3)

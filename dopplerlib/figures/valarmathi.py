@@ -55,7 +55,8 @@ def window_error(figure: Figure, table: WindowTable, snr_db: float) -> None:
             f"{a:g} m/s²", (table.windows[-1], cee[-1]), xytext=(5, 0), va="center",
             textcoords="offset points", fontsize=9, annotation_clip=False,
         )  # fmt: skip
-    ax.set(xscale="log", yscale="log", xlabel="window (samples)", ylabel="cee")
+    ax.set(xscale="log", xlabel="window (samples)")
+    ax.set(yscale="log", ylabel="running relative error (cee)")
     ax.set_xticks(table.windows, [str(window) for window in table.windows])
     ax.minorticks_off()
 
@@ -86,11 +87,12 @@ def velocities(
         for ax, (name, v), number in zip(axes, panels, three, strict=True):
             ax.plot(result.time, result.truth, color=TRUTH, ls="--", lw=1.2, label="truth")
             ax.plot(result.time, v[run], color=OURS, lw=1.2, label="estimate")
-            ax.set_title(f"Fig {number}: {name}" if number else name)
+            ax.set_title(f"{name} (their Fig {number})" if number else name)
             inset = ax.inset_axes([0.3, 0.56, 0.68, 0.42])
             inset.plot(result.time[window], result.truth[window], color=TRUTH, ls="--", lw=1)
             inset.plot(result.time[window], v[run, window], color=OURS, lw=1)
             inset.set(xticks=[], yticks=[])
+            ax.indicate_inset_zoom(inset, edgecolor=BOUND)
             inset.grid(False)
         low, high = result.truth.min(), result.truth.max()
         space = 0.05 * (high - low)
@@ -128,13 +130,14 @@ def cumulative_errors(
         for algorithm, sensor in shown:
             color, line, _ = _STYLES[algorithm]
             single = algorithm in (1, 2, 6)
+            behind = single and sensor == 1  # wide and pale: both sensors are nearly the same
             ax.plot(
-                time, 100 * result.cee(algorithm, sensor).mean(axis=0), color=color, ls=line,
-                alpha=0.55 if sensor == 2 else 1.0,
-                label=f"algorithm {algorithm}" + (f", sensor {sensor}" if single else ""),
+                time, 100 * result.cee(algorithm, sensor).mean(axis=0), color=color,
+                ls="-" if behind else line, lw=4 if behind else 1.4, alpha=0.4 if behind else 1,
+                label=ALGORITHMS[algorithm] + (f", sensor {sensor}" if single else ""),
             )  # fmt: skip
         ax.set_title(title)
-        ax.set(ylabel="cee (%)", ylim=(0, None), xticks=range(0, 16, 5))
+        ax.set(ylabel="relative error, cee (%)", ylim=(0, None), xticks=range(0, 16, 5))
         ax.legend(fontsize=8.5, **_FRAME)
     for ax in figure.axes[-ncols:]:
         ax.set_xlabel("time (s)")
@@ -162,9 +165,11 @@ def sweep(figure: Figure, study: FusionStudy, failed: float, limits: Sequence[fl
                 study.snrs_db, middle, color=color, ls=line, marker=mark, ms=3.5, lw=1.3,
                 label=name,
             )  # fmt: skip
-        ax.axhline(failed, color=BOUND, lw=0.8)
-        for limit in limits:
-            ax.axvline(limit, color=PUBLISHED, lw=0.9, ls=":")
+        ax.axhline(failed, color=BOUND, lw=0.8, label=f"failed: {failed:g} m/s")
+        for i, limit in enumerate(limits):
+            named = f"limits in the document: {' and '.join(f'{one:g}' for one in limits)} dB"
+            label = named if i == 0 else None
+            ax.axvline(limit, color=PUBLISHED, lw=1.2, ls=":", label=label)
         ax.set_title(title)
         ax.set(yscale="log")
     for ax in axes[:, 0]:
@@ -194,7 +199,8 @@ def failures(
             value, low, high = 100 * np.array([[e.value, e.low, e.high] for e in found]).T
             ax.fill_between(snrs_db, low, high, color=color, alpha=0.2, lw=0)
             ax.plot(snrs_db, value, color=color, ls=line, marker=mark, ms=3.5, lw=1.3, label=name)
-        ax.axhline(100 * failed_share, color=BOUND, lw=0.8)
+        failed = f"failed: {failed_share:.0%} of the runs"
+        ax.axhline(100 * failed_share, color=BOUND, lw=0.8, label=failed)
         ax.set_title(path)
         ax.set_xlabel("SNR (dB)")
     axes[0].set_ylabel("failed runs (%)")

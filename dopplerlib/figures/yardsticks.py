@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._hints import Array
-from .style import BOUND, ORANGE, OURS, PUBLISHED, SENSOR, TRUTH, drawing, plain_log_ticks
+from .style import BOUND, ORANGE, OURS, PINK, SENSOR, TRUTH, drawing, plain_log_ticks
 
 # Exact posterior, tracker, mean bound, posterior bound: told apart by line and marker as well.
-_CURVES = ((TRUTH, "-", "o"), (OURS, "--", "s"), (BOUND, "-", None), (PUBLISHED, ":", None))
+_CURVES = ((TRUTH, "-", "o"), (OURS, "--", "s"), (BOUND, "-", None), (PINK, ":", None))
 
 
 @drawing(7.0, 3.1)
@@ -91,7 +91,7 @@ def many_bounds(
         right.plot(*(1e3 * line).T, color=OURS, lw=0.7, alpha=0.6)
     left.plot(*sensors.T, "s", color=SENSOR, ms=4, label="sensors")
     left.set(xlabel="y (m)", ylabel="x (m)")
-    looks = ((TRUTH, "--"), (PUBLISHED, "-"))
+    looks = ((TRUTH, "--"), (PINK, "-"))
     for (name, P), (color, ls) in zip(means.items(), looks, strict=True):
         line = 1e3 * (np.linalg.cholesky(P) @ circle).T
         right.plot(*line.T, color=color, ls=ls, lw=2, label=name)
@@ -101,7 +101,7 @@ def many_bounds(
     figure.legend(loc="outside lower center", ncols=3)
 
 
-@drawing(6.0, 3.0)
+@drawing(7.0, 3.2)
 def shells(figure: Figure, edges: Array, bounds: Array, names: Sequence[str]) -> None:
     """Draw two means of the bounds of the targets in each range of distance.
 
@@ -110,7 +110,7 @@ def shells(figure: Figure, edges: Array, bounds: Array, names: Sequence[str]) ->
     names: Of the two means.
     """
     ax = figure.subplots()
-    looks = ((TRUTH, "--"), (PUBLISHED, "-"))
+    looks = ((TRUTH, "--"), (PINK, "-"))
     for curve, name, (color, ls) in zip(bounds, names, looks, strict=True):
         ax.stairs(1e3 * curve, edges, color=color, ls=ls, lw=2, baseline=None, label=name)
     ax.set(xlabel="distance from the ring (m)", ylabel="position error, RMS (mm)", yscale="log")

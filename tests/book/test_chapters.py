@@ -2,6 +2,8 @@
 
 import ast
 import re
+from base64 import b64decode
+from statistics import median
 
 import pytest
 
@@ -84,6 +86,19 @@ def test_what_a_cell_shows_has_a_name():
         if set(output.get("data", ())) == {"text/plain"} and bare(output.data["text/plain"])
     }
     assert nameless == {}
+
+
+def test_pictures_are_equally_wide_so_that_their_letters_are_equally_large():
+    """The page shows all at one width; what sticks out, or leaves a side empty, changes it."""
+    widths = {
+        f"{name}#{cell.id}": int.from_bytes(b64decode(picture[:40])[16:20])
+        for name, cells in BOOK.items()
+        for cell in cells
+        for output in cell.get("outputs", [])
+        if (picture := output.get("data", {}).get("image/png"))
+    }
+    usual = median(widths.values())
+    assert {k: w for k, w in widths.items() if not 0.97 * usual < w < 1.02 * usual} == {}
 
 
 @pytest.mark.parametrize("name", WITH_EXERCISES)

@@ -1,9 +1,9 @@
-"""Every figure that a test draws has units and letters of a size, and none stays with pyplot."""
+"""Every figure of a test has units, letters to be read, colors with one meaning, and is closed."""
 
 import matplotlib.pyplot as plt
 import pytest
 
-from tests.drawn import check_labels, small
+from tests.drawn import check_colors, check_labels, pale, small
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -21,4 +21,5 @@ def drawn():
     assert plt.get_fignums() == []
     for each in figures:
         check_labels(each)
-        assert small(each) == []
+        check_colors(each)
+        assert small(each) == pale(each) == []

@@ -48,8 +48,8 @@ def test_a_record_is_shown_in_three_scales():
 
 def test_the_error_is_the_root_mean_square_over_runs():
     error = np.array([3.0, 4.0])[:, None] * np.ones(50)
-    (ax,) = draw.with_without(TIME, {"radar": {"ours": error}}).axes
-    np.testing.assert_allclose(lines(ax)["ours, 2 runs"].get_ydata(), np.sqrt(12.5))
+    (ax,) = draw.with_without(TIME, {"radar": {"range only": error}}).axes
+    np.testing.assert_allclose(lines(ax)["range only, 2 runs"].get_ydata(), np.sqrt(12.5))
 
 
 def test_departures_that_never_come_are_not_counted():
@@ -74,7 +74,7 @@ def test_every_figure_fits_the_page():
         "tracks": draw.tracks([PLACES] * 2, ("a", "b"), SENSORS, [PLACES] * 2),
         "noise_law": draw.noise_law(TIME + 1, law, {"a": TIME + 1}, {"a": TIME / 50}),
         "one_range": draw.one_range(TIME, TIME, TIME, law, (10, 20)),
-        "with_without": draw.with_without(TIME, {"radar": {"ours": np.ones((2, 50))}}),
+        "with_without": draw.with_without(TIME, {"radar": {"range only": np.ones((2, 50))}}),
         "gates": draw.gates(MOMENTS, (0.9, 0.6), 9.0),
         "radar_record": draw.radar_record(TIME, TIME, TIME, TIME, TIME < 9, [(0, 9), (1, 2)]),
         "departures": draw.departures(np.array([[41.0, 50.0]]), (46.0, 49.0), ("1", "2")),

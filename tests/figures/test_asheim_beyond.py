@@ -8,6 +8,7 @@ from dopplerlib.figures import asheim_beyond as draw
 from tests.drawn import check_figures, lines
 
 TIME = np.arange(1.0, 50.0)
+NAMES = "thesis, its code", "modern, apart", "modern, one filter"
 SENSORS = np.array([[-0.5, 0.0], [0.5, 0.0]])
 
 
@@ -34,8 +35,8 @@ def test_the_contours_of_the_bound_are_labeled_large_enough_to_read(bound):
 
 
 def test_a_range_beyond_the_record_is_drawn_as_an_arrow_at_the_edge():
-    found = dict.fromkeys("xyz", ConfidenceInterval(5.0, 4.9, 5.2)) | {
-        "z": ConfidenceInterval(np.inf, 6, np.inf)
+    found = dict.fromkeys(NAMES, ConfidenceInterval(5.0, 4.9, 5.2)) | {
+        NAMES[-1]: ConfidenceInterval(np.inf, 6, np.inf)
     }
     (ax,) = draw.reach({"a": found}).axes
     points = [line for line in ax.lines if len(line.get_xdata()) == 1]
@@ -45,8 +46,10 @@ def test_a_range_beyond_the_record_is_drawn_as_an_arrow_at_the_edge():
 
 
 def test_a_sweep_shows_every_value_with_its_interval():
-    (ax,) = draw.sweep([0.0, 1.0], {"a": [ConfidenceInterval(1.0, 0.9, 1.1)] * 2}, "delay (s)").axes
-    assert lines(ax)["a"].get_xydata().tolist() == [[0.0, 1.0], [1.0, 1.0]]
+    (ax,) = draw.sweep(
+        [0.0, 1.0], {"one filter": [ConfidenceInterval(1.0, 0.9, 1.1)] * 2}, "delay (s)"
+    ).axes
+    assert lines(ax)["one filter"].get_xydata().tolist() == [[0.0, 1.0], [1.0, 1.0]]
     ends = ax.collections[0].get_paths()[0].vertices[:, 1]
     assert (ends.min(), ends.max()) == (0.9, 1.1)
 
@@ -55,8 +58,10 @@ def test_every_figure_fits_the_page(bound):
     one = ConfidenceInterval(5.0, 4.9, np.inf)
     figures = {
         "bound_map": bound,
-        "consistency": draw.consistency(TIME, {"a": {"b": TIME}}, [(0.9, 1.1)]),
-        "reach": draw.reach({"a": dict.fromkeys("xyz", one)}),
-        "sweep": draw.sweep(TIME[:1], {"a": [ConfidenceInterval(1.0, 0.9, 1.1)]}, "delay (s)"),
+        "consistency": draw.consistency(TIME, {"a": {"one filter": TIME}}, [(0.9, 1.1)]),
+        "reach": draw.reach({"a": dict.fromkeys(NAMES, one)}),
+        "sweep": draw.sweep(
+            TIME[:1], {"one filter": [ConfidenceInterval(1.0, 0.9, 1.1)]}, "delay (s)"
+        ),
     }
     check_figures(draw, figures, made_up=["bound_map"])

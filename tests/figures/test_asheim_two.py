@@ -15,9 +15,9 @@ UNIT = ((0.0, 1.0), (0.0, 1.0))
 
 def test_the_error_is_the_root_mean_square_over_runs():
     error = np.array([3.0, 4.0])[:, None] * np.ones(50)
-    (ax,) = draw.error_over_distance(TIME, {"ours": error}, published=5.66).axes
+    (ax,) = draw.error_over_distance(TIME, {"one filter": error}, published=5.66).axes
     shown = lines(ax)
-    np.testing.assert_allclose(shown["ours"].get_ydata(), np.sqrt(12.5))
+    np.testing.assert_allclose(shown["one filter"].get_ydata(), np.sqrt(12.5))
     assert shown["usable range in the thesis"].get_xdata() == [5.66, 5.66]
 
 
@@ -44,6 +44,6 @@ def test_every_figure_fits_the_page():
         ),
         "plane": draw.plane(PLACES, [{"a": PLACES, "b": PLACES}], SENSORS, UNIT, ["t"]),
         "triangulated": draw.triangulated(TIME, PLACES, PLACES, PLACES, SENSORS, UNIT),
-        "error_over_distance": draw.error_over_distance(TIME, {"ours": np.ones((2, 50))}),
+        "error_over_distance": draw.error_over_distance(TIME, {"one filter": np.ones((2, 50))}),
     }
     check_figures(draw, figures)

@@ -40,7 +40,7 @@ def test_members_are_ellipses_as_dark_as_they_are_likely():
 
 
 def test_nees_and_errors_over_bounds_are_those_given():
-    cases = {"A": {"one": summary(6.0), "two": summary(60.0)}, "B": {"one": summary(7.0)}}
+    cases = {"A": {"one": summary(6.0), "paper": summary(60.0)}, "B": {"one": summary(7.0)}}
     left, right, median, _ = draw.nees(cases).axes
     one, two, _ = left.lines
     np.testing.assert_allclose(one.get_data(), [[0.02, 0.04, 0.06], [6, 6, 6]])

@@ -12,7 +12,7 @@ def curves(figure):
 
 
 def test_every_printed_form_has_a_box_and_an_arrow():
-    stages, products = ["formula", "code"], ["Python", "C99", "LaTeX"]
+    stages, products = ["Eq 6", "code"], ["Python", "C99", "LaTeX"]
     (ax,) = derivation.one_text(stages, products).axes
     assert sorted(text.get_text() for text in ax.texts) == sorted(stages + products)
     assert len(ax.patches) == 5 + 1 + 3  # boxes, from stage to stage, to each form

@@ -18,7 +18,7 @@ def figures():
     return {
         "errors": draw.errors_by_noise(OURS, DOTS),
         "median": draw.mean_and_median({"a": (ERROR, ERROR / 2)}, 0.9 * ERROR[:, 2], NOISE_LEVELS),
-        "sequences": draw.sequences({"a": ERROR[:2], "b": 2 * ERROR[:2]}),
+        "sequences": draw.sequences({"published": ERROR[:2], "b": 2 * ERROR[:2]}),
     }
 
 

@@ -13,9 +13,13 @@ SHARE = [
     ConfidenceInterval(0.1, 0.01, 0.2),
     ConfidenceInterval(0.0, 0.0, 0.1),
 ]
+NAMES = [
+    "highest bin", "parabola, padded", "Jacobsen", "Quinn 2",
+    "Aboutanios-Mulgrew", "maximum likelihood", "Kay", "pulse pair",
+]  # fmt: skip
 RACE = FrequencyBenchmark(
-    np.arange(3), np.array([10.0, 2.0, 1.0]), 100, dict.fromkeys("abcdefgh", RATIO),
-    dict.fromkeys("abcdefgh", SHARE),
+    np.arange(3), np.array([10.0, 2.0, 1.0]), 100, dict.fromkeys(NAMES, RATIO),
+    dict.fromkeys(NAMES, SHARE),
 )  # fmt: skip
 
 
@@ -82,19 +86,21 @@ def test_every_estimator_has_a_look_of_its_own():
         (drawn[n].get_color(), drawn[n].get_linestyle(), drawn[n].get_marker()) for n in RACE.ratio
     }
     assert len(looks) == len(RACE.ratio)
+    biased = lines(iq.bias(np.arange(3), {n: np.ones(3) for n in NAMES[:3]}).axes[0])
+    assert all(biased[n].get_color() == drawn[n].get_color() for n in NAMES[:3])
 
 
 def test_errors_are_drawn_in_hertz_with_their_intervals():
-    top, low = iq.threshold(RACE, ["a"], RACE.bound, RACE.bound).axes
-    np.testing.assert_allclose(lines(top)["a"].get_ydata(), [20, 4, 2])
+    top, low = iq.threshold(RACE, ["Kay"], RACE.bound, RACE.bound).axes
+    np.testing.assert_allclose(lines(top)["Kay"].get_ydata(), [20, 4, 2])
     np.testing.assert_allclose(bars(top), [[10, 30], [2, 6], [1, 3]])
     # No outlier was seen at the last level.
     np.testing.assert_allclose(bars(low), [[0.3, 0.7], [0.01, 0.2]])
 
 
 def test_a_bias_of_zero_is_left_out():
-    figure = iq.bias(np.arange(3), {"a": np.array([1e-3, 0.0, 1e-3])})
-    np.testing.assert_array_equal(lines(figure.axes[0])["a"].get_ydata(), [1e-3, np.nan, 1e-3])
+    figure = iq.bias(np.arange(3), {"Kay": np.array([1e-3, 0.0, 1e-3])})
+    np.testing.assert_array_equal(lines(figure.axes[0])["Kay"].get_ydata(), [1e-3, np.nan, 1e-3])
 
 
 def test_the_best_window_lies_on_its_law():

@@ -42,11 +42,12 @@ def test_a_line_of_a_tone_passes_through_its_target():
 
 
 def test_solutions_and_targets_stand_in_their_panel():
-    found = {"a": np.ones((3, 1, 2)), "b": np.zeros((2, 1, 2))}
+    found = {"a": np.array([[[1.0, 2.0]], [[1.1, 2.0]], [[9.0, 2.0]]]), "b": np.zeros((2, 1, 2))}
     figure = draw.solved(found, {"a": np.array([[1.0, 2.0]]), "b": np.array([[3.0, 4.0]])})
     first, second = figure.axes
     assert len(first.lines[0].get_xdata()) == 3 and len(second.lines[0].get_xdata()) == 2
     assert second.lines[1].get_xydata().tolist() == [[3.0, 4.0]]
+    assert [ax.texts[0].get_text() for ax in figure.axes] == ["1 of 3 outside", "2 of 2 outside"]
 
 
 def test_a_map_has_its_axes_and_its_labels():

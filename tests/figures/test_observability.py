@@ -46,7 +46,7 @@ def figures():
         ),
         "bound_maps": draw.bound_maps(AWAY, ASIDE, {"m": MAP, "n": 2 * MAP}, [RING, LINE]),
         "bounds_over_time": draw.bounds_over_time(
-            TIME, {"ring": TIME**-1.5, "more": TIME**-0.5}, 2 * TIME**-1.5, {"one": (0.01, 0.1)}
+            TIME, {"ring": TIME**-1.5, "more": TIME**-0.5}, 2 * TIME**-1.5, {"Table 2": (0.01, 0.1)}
         ),
     }
 
@@ -142,4 +142,4 @@ def test_bounds_over_time_have_the_law_and_the_marks(figures):
     shown = lines(ax)
     assert_allclose(shown["ring"].get_xydata(), np.transpose([TIME, TIME**-1.5]))
     assert_allclose(shown["law of short records, ring"].get_ydata(), 2 * TIME**-1.5)
-    assert_allclose(shown["one"].get_xydata(), [[0.01, 0.1]])
+    assert_allclose(shown["Table 2"].get_xydata(), [[0.01, 0.1]])

@@ -28,7 +28,7 @@ def figures():
             {"a": (ACROSS, UP, COST)}, [{"truth": (0.2, 0.5)}], [("y (m)", "x (m)")]
         ),
         "error_distributions": draw.error_distributions(
-            {"ours": tuple(ERRORS)}, {"printed": (0.2, 0.3)}, (0.5, 0.6)
+            {"ours": tuple(ERRORS)}, {"Table 2": (0.2, 0.3)}, (0.5, 0.6)
         ),
         "errors_by_samples": draw.errors_by_samples(
             SAMPLES, [ERRORS[0] / k for k in SAMPLES], np.divide(1, SAMPLES), (10, 0.02)
@@ -39,7 +39,9 @@ def figures():
         "area_fractions": draw.area_fractions(
             LIMITS, {"left": {"ours": DRAWS, "published": LIMITS}}
         ),
-        "line_profiles": draw.line_profiles(AXIS, {"on": AXIS**2, "off": 9 * AXIS**2}, MAP[0], 0.1),
+        "line_profiles": draw.line_profiles(
+            AXIS, {"published": AXIS**2, "off": 9 * AXIS**2}, MAP[0], 0.1
+        ),
         "wrong_windows": draw.wrong_windows({"road": {"line": WRONG}, "ring": {"line": 2 * WRONG}}),
     }
 

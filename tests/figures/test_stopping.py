@@ -14,7 +14,10 @@ STOPPED = np.array([[1.0, 0.9, 1.0], [np.nan] * 3, [0.5, 0.4, 0.6]])
 
 @pytest.fixture(scope="module")
 def figures():
-    panels = {"collision": {"sum": TIME, "EKF": 2 * TIME}, "passing": {"sum": TIME, "EKF": TIME}}
+    panels = {
+        "collision": {"sum": TIME, "EKF (paper)": 2 * TIME},
+        "passing": {"sum": TIME, "EKF (paper)": TIME},
+    }
     marks = {"collision": {"in the ball": 0.012}, "passing": {}}
     return {
         "one_approach": draw.one_approach(TIME, panels, marks, 0.5),

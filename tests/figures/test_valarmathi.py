@@ -7,6 +7,8 @@ from dopplerlib.figures import valarmathi as draw
 from dopplerlib.systems import valarmathi as system
 from tests.drawn import check_figures, check_legends
 
+NUMBERED = {11: "sensor 1", 12: "sensor 2", 13: "fused"}
+
 
 @pytest.fixture(scope="module")
 def table():
@@ -30,7 +32,7 @@ def test_the_best_window_is_marked_on_every_line(table):
 def test_velocities_are_those_of_both_sensors_and_of_their_fusion(result):
     figure = draw.velocities([result], run=1, numbers=[(11, 12, 13)])
     titles = [ax.get_title("left") for ax in figure.axes[:3]]
-    assert titles == ["Fig 11: sensor 1", "Fig 12: sensor 2", "Fig 13: fused"]
+    assert titles == [f"{name} (their Fig {n})" for n, name in NUMBERED.items()]
     expected = result.velocity(1, 1), result.velocity(1, 2), result.velocity(3)
     for ax, v in zip(figure.axes[:3], expected, strict=True):
         np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), v[1])
@@ -43,7 +45,7 @@ def test_a_running_error_is_the_mean_over_the_runs_in_percent(result):
     expected = 100 * result.cee(2, 2).mean(axis=0)
     np.testing.assert_array_equal(ax.get_lines()[0].get_ydata(), expected)
     labels = [line.get_label() for line in ax.get_lines()]
-    assert labels == ["algorithm 2, sensor 2", "algorithm 4"]
+    assert labels == ["2 adaptive window, sensor 2", "4 two adaptive, fused"]
 
 
 def test_a_sweep_shows_medians_with_their_intervals_and_the_limits():

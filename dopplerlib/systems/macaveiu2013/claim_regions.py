@@ -17,7 +17,12 @@ from .truth import vehicle_paths
 
 MUCH_SMALLER = 0.5  # our reading of "much smaller than 1 m": less than half of it
 MOST = 0.9  # a claim on every record holds where it is true in this fraction of them
-CLAIMS = ("Fig 7 much below 1 m", "all below 1 m", "10b and 11c worse", "all three")
+CLAIMS = (
+    "1  away: error far below 1 m",
+    "2  all paths: error below 1 m",
+    "3  bends: larger speed errors",
+    "all three",
+)
 Largest = Annotated[FloatArray, exactly(None, None)]
 Axis = tuple[Literal["sigma_x", "sigma_v", "w"], Annotated[FloatArray, exactly(None)]]
 

@@ -159,9 +159,9 @@ def test_a_bound_of_the_noise_is_where_the_largest_error_reaches_the_limit():
         s = S.with_(sigma_v=factor * S.sigma_v, w=factor * S.w, range_resolution=float(factor))
         rng = np.random.default_rng(15)
         found.append(paper.claim_borders_along("sigma_x", factor * values, 50, rng=rng, s=s))
-    ((low, high, holds),) = found[0]["Fig 7 much below 1 m"]
+    ((low, high, holds),) = found[0]["1  away: error far below 1 m"]
     assert low < high and not holds
-    ((twice_low, twice_high, _),) = found[1]["Fig 7 much below 1 m"]
+    ((twice_low, twice_high, _),) = found[1]["1  away: error far below 1 m"]
     assert (twice_low, twice_high) == pytest.approx((2 * low, 2 * high))
 
 
