@@ -27,7 +27,7 @@ explorables.combinations = (() => {
       const [curved, straight] = switches.world;
       const filters = [...new Set(Object.keys(rows).map((name) => name.slice(0, name.lastIndexOf(","))))];
       const left = draw.panel(
-        { x: names, y: 54, width: half - names - 14, height: 26 * filters.length }, { ...SCALE, label: "median NEES" }, { from: 0, to: filters.length });
+        { x: names, y: 54, width: half - names - 20, height: 26 * filters.length }, { ...SCALE, label: "median NEES" }, { from: 0, to: filters.length });
       let shapes = draw.text([0, 14], "P0, noise, start") + draw.dot([128, 9], 6, "published filled");
       shapes += draw.text([140, 14], "curved") + draw.box(204, 3, 12, 12, "ours filled") + draw.text([222, 14], "straight");
       shapes += left.frame();
@@ -49,7 +49,7 @@ explorables.combinations = (() => {
       // The course of the chosen one, over all others.
       const x = wide ? half + 44 : 44, y = wide ? left.top : left.bottom + 106;
       const panel = draw.panel(
-        { x, y, width: width - x - 10, height: 26 * filters.length },
+        { x, y, width: width - x - 20, height: 26 * filters.length },
         { from: 1, to: 1000, log: true, ticks: [1, 10, 100, 1000], label: "samples" }, SCALE);
       shapes += panel.frame();
       const to = (k, value) => panel.to(moments[k] + 1, value);

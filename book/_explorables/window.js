@@ -136,7 +136,7 @@ explorables.window = (() => {
       });
       const top = Math.max(...heights);
       const left = draw.panel(
-        { x: 12, y: 62, width: half - 24, height: 190 },
+        { x: 12, y: 62, width: half - 30, height: 190 },
         { from: SPAN[0], to: SPAN[1], ticks: [-100, 0, 100, 200, 300], label: "frequency minus that of the tone (Hz)" },
         { from: 0, to: 1.1, label: "spectrum of one window" });
       let shapes = left.frame() + draw.path(GRID.map((f, i) => left.to(f, heights[i] / top)), "ours thick");
