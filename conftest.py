@@ -18,13 +18,11 @@ gc.disable()  # until all is collected: a fifth of the time, for modules and tes
 # At once: other files of this kind import NumPy and Matplotlib.
 PREPARED = ExitStack()
 PREPARED.enter_context(own_profile())
-# The figures of chapters are drawn, once (a tight box is drawn twice), but their pixels would be
-# compared with nothing.
+# The figures of chapters are drawn once (a tight box is drawn twice) and, where kernels are copied,
+# not painted: their pixels would be compared with nothing.
 SETTINGS = Path(os.environ["IPYTHONDIR"]) / "profile_default" / "ipython_config.py"
 SETTINGS.parent.mkdir()
 figures = {"bbox_inches": None, "dpi": 80}
-if sys.platform == "linux":  # a copied kernel holds this one of the tools
-    figures["backend"] = "module://tools.unpainted"
 SETTINGS.write_text(f"c.InlineBackend.print_figure_kwargs = {figures}\n")
 # Their kernels are copies of one process, where processes can be copied.
 SPEC = Path(os.environ["JUPYTER_DATA_DIR"]) / "kernels" / "copied" / "kernel.json"

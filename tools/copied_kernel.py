@@ -108,19 +108,21 @@ class Provisioner(LocalProvisioner):
 
 
 def draw():
-    """Find the fonts of the book, and build Matplotlib's parser of formulas."""
+    """Let no image be painted, find the fonts of the book, and build the parser of formulas."""
     from matplotlib import pyplot
+    from matplotlib.backend_bases import register_backend
     from matplotlib.figure import Figure
 
     from dopplerlib.figures.style import STYLE
 
+    register_backend("png", KEPT)
     with as_file(STYLE) as path, pyplot.style.context(path):
         axes = Figure().subplots()
         for size in (8, 8.5, 9, 9.5, 10.5, 11):  # in points, as figures and their style have them
             axes.annotate(
                 "text and $x_1$", (0, 1), (0, 2), arrowprops={"arrowstyle": "->"}, fontsize=size
             )
-        axes.figure.savefig(io.BytesIO(), format="png", backend=f"module://{KEPT}")
+        axes.figure.savefig(io.BytesIO(), format="png")
 
 
 def prepare():

@@ -5,6 +5,7 @@ fifths of what showing it costs. Errors and warnings come from what is left: tic
 fonts. That its axes find their places is seen by the tests of `dopplerlib.figures`.
 """
 
+from matplotlib import cbook
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 
@@ -18,3 +19,5 @@ class FigureCanvas(FigureCanvasAgg):
             self.figure.set_layout_engine("none")
             with self.get_renderer()._draw_disabled():
                 self.figure.draw(self.get_renderer())
+        with cbook.open_file_cm(filename, "wb"):
+            pass  # there is a file, which is empty

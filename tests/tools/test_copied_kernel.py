@@ -54,11 +54,11 @@ def test_a_kernel_finds_the_modules_that_any_other_finds(tmp_path):
         assert run(code) == alone.stdout
 
 
-def test_a_kernel_draws_figures_without_the_folder_of_the_tools(tmp_path):
+def test_a_kernel_draws_figures_without_paint_and_without_the_folder_of_the_tools(tmp_path):
     with started(tmp_path) as (_, run):
-        save = "savefig('x.png', backend='module://tools.unpainted')"
-        code = f"import matplotlib.pyplot as plt; plt.plot([1, 2]); plt.{save}; print(6 * 7)"
-        assert run(code).startswith("42\n")
+        draw = "from matplotlib.figure import Figure; f = Figure(); f.text(0, 0, 'text')"
+        assert run(f"{draw}; f.savefig('x.png'); print(6 * 7)") == "42\n"
+        assert (tmp_path / "x.png").read_bytes() == b""
         assert run("import tools") == "ModuleNotFoundError"
 
 
