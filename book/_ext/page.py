@@ -30,7 +30,7 @@ CITE = {
     "label": "cite-button",
 }
 EMPTY_HEAD = re.compile(r"<th[^>]*>\s*(?:<p>\s*</p>)?\s*</th>")
-CELL = re.compile(r"(?<=>)[^<>]+(?=</t[dh]>|</p>\s*</td>)")  # of a table
+CELL = re.compile(r"(?<=>)[^<>]+(?=</t[dh]>|</p>\s*</td>|<br)")  # lines of a table
 POWER = re.compile(r"(?<![\w.])(\d(?:\.\d+)?)e([+-]\d+)(?!\w)")
 SIGNS = {"&lt;=": "\u2264", "&gt;=": "\u2265"}
 PLAIN = range(-3, 5)  # exponents of numbers that need no power of ten
@@ -44,7 +44,7 @@ ENTRY = re.compile(r"<(?:td|th)(?=[ >])")
 PHRASE = re.compile(r"[^\W\d]\S* \S")  # begins with a word, and another one follows
 HYPHEN = re.compile(r"(?<![^\s(])-(?=\d)")
 INTERVAL = re.compile(r" (?=\([^()<]* to [^()<]*\))")  # the space before: "2.5 (1.0 to 4.0)"
-PROSE = (nodes.paragraph, nodes.caption, nodes.emphasis, nodes.strong)
+PROSE = (nodes.title, nodes.paragraph, nodes.caption, nodes.emphasis, nodes.strong)
 ROLES = re.compile(r' role="(?:list|doc-biblioentry)"(?=[^>]*>)')
 
 

@@ -111,3 +111,14 @@ addEventListener("DOMContentLoaded", () => {
 addEventListener("beforeprint", () => {
   for (const fold of document.querySelectorAll("td details")) fold.open = true;
 });
+
+// Paper is white: a page that is dark would be printed in pale letters.
+{
+  const page = document.documentElement;
+  let worn;
+  addEventListener("beforeprint", () => {
+    worn = page.dataset.theme;
+    page.dataset.theme = "light";
+  });
+  addEventListener("afterprint", () => (page.dataset.theme = worn));
+}

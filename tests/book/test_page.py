@@ -124,7 +124,7 @@ def test_a_hyphen_before_a_number_is_printed_as_a_minus_but_not_in_code():
     ],
 )
 def test_a_table_prints_powers_and_signs_and_code_keeps_them(written, printed):
-    text = "<td>{0}</td><th>{0}</th><td><p>&gt; {0}</p></td>"
+    text = "<td>{0}</td><th>{0}</th><td><p>&gt; {0}<br />{0}</p></td>"
     assert page.repaired(text.format(written)) == text.format(printed)
     assert page.repaired(f"<td><code>{written}</code></td>") == f"<td><code>{written}</code></td>"
 

@@ -80,6 +80,13 @@ def test_a_page_is_whole_and_accessible_at_every_width_and_in_both_themes(
     assert found == []
 
 
+def test_a_dark_page_is_printed_as_a_light_one(tab):
+    tab.open("search.html", theme="dark")
+    events = "beforeprint", "afterprint"
+    ask = "dispatchEvent(new Event('{}')), document.documentElement.dataset.theme"
+    assert [tab.run(ask.format(event)) for event in events] == ["light", "dark"]
+
+
 @pytest.mark.parametrize(
     "words, page", [("observability", "observability"), ("number of runs", "consistency")]
 )
