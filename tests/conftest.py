@@ -7,6 +7,7 @@ from pathlib import Path
 
 import matplotlib
 import pytest
+from _pytest.doctest import DoctestModule
 from hypothesis import settings
 
 from tools.alone import alone
@@ -48,3 +49,9 @@ def pytest_collection_modifyitems(items):
         return 3
 
     items.sort(key=rank)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file():
+    """Look for examples in the library alone: in tests there are none, but looking takes long."""
+    return [one for one in (yield) if not isinstance(one, DoctestModule)]

@@ -220,7 +220,7 @@ INSIDE = {
 # A function without a call above is tried with the one that the example in its docstring makes.
 for _function in public_functions():
     if _function not in CALLS and _function not in INSIDE:
-        if _calls := example_calls(_function.__module__.rpartition(".")[0], _function):
+        if _calls := example_calls(_function.__module__, _function):
             CALLS[_function] = _calls[0]
 
 

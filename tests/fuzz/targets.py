@@ -75,6 +75,7 @@ class Target:
         return self.kinds.get(argument) or _kind(self.calls[0].get(argument))
 
 
+@functools.cache
 def modules(package, private=False):
     """Return the public modules under `package`, imported; the others as well if `private`."""
     top = import_module(package)
