@@ -73,7 +73,7 @@ addEventListener("DOMContentLoaded", () => {
   }
 });
 
-// A scorecard: the number of each verdict, buttons that leave rows out, and what was tried folded.
+// A scorecard: the number of each verdict, and buttons that leave rows out.
 addEventListener("DOMContentLoaded", () => {
   for (const table of document.querySelectorAll(".bd-article table:has(td:first-child .verdict)")) {
     const rows = new Map();
@@ -98,13 +98,20 @@ addEventListener("DOMContentLoaded", () => {
       bar.append(button);
     }
     (table.closest(".pst-scrollable-table-container") ?? table).before(bar);
-    for (const cell of table.querySelectorAll("tbody td:nth-child(3)")) {
+  }
+});
+
+// What was tried is folded: below two lines of a number on a scorecard, below the verdict in a chapter.
+addEventListener("DOMContentLoaded", () => {
+  const kept = { "table:has(td:first-child .verdict) td:nth-child(3)": 2, "td:last-child:has(.verdict)": 1 };
+  for (const [cells, lines] of Object.entries(kept)) {
+    for (const cell of document.querySelectorAll(`.bd-article ${cells}`)) {
       const breaks = cell.querySelectorAll("br");
-      if (breaks.length < 3) continue;
-      const fold = document.createElement("details");
+      if (breaks.length <= lines) continue;
+      const last = breaks[lines - 1], fold = document.createElement("details");
       fold.innerHTML = "<summary>over all choices</summary>";
-      while (breaks[1].nextSibling) fold.append(breaks[1].nextSibling);
-      breaks[1].replaceWith(fold);
+      while (last.nextSibling) fold.append(last.nextSibling);
+      last.replaceWith(fold);
     }
   }
 });
