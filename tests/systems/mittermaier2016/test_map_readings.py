@@ -24,6 +24,12 @@ def left(request):
 
 
 @pytest.fixture(scope="module")
+def drawn():
+    """Return a map of one draw, as a paper has it."""
+    return paper.error_map(1, rng=np.random.default_rng(45))
+
+
+@pytest.fixture(scope="module")
 def right():
     rng = np.random.default_rng(43)
     return {
@@ -84,12 +90,11 @@ def test_the_lines_on_which_sensors_may_stand_are_left_out(published, left):
 
 @pytest.mark.parametrize("quantity", ["position", "state"])
 @pytest.mark.parametrize("orientation", list(paper.ORIENTATIONS))
-def test_a_map_that_we_draw_ourselves_is_recognized(published, left, orientation, quantity):
+def test_a_map_that_we_draw_ourselves_is_recognized(published, left, drawn, orientation, quantity):
     """By five deviations. State and velocity are told apart less well: mostly they are one."""
-    source = paper.error_map(1, rng=np.random.default_rng(45))
-    drawn = paper.ORIENTATIONS[orientation](getattr(source, quantity))[..., 0]
-    below = drawn < published.lowest
-    known = np.where(below, np.nan, drawn)
+    error = paper.ORIENTATIONS[orientation](getattr(drawn, quantity))[..., 0]
+    below = error < published.lowest
+    known = np.where(below, np.nan, error)
     own = replace(published, error=np.stack([known] * 2), below=np.stack([below] * 2))
     best, *others = paper.map_readings(left, own, 0)
     assert best.orientation == orientation
@@ -158,11 +163,10 @@ def test_neither_position_nor_state_gives_the_shares_of_the_right_map(published,
     assert paper.fraction_above(state, [0.2], known).min() > theirs[1]
 
 
-def test_what_cannot_be_compared_is_refused(published, left):
+def test_what_cannot_be_compared_is_refused(published, left, drawn):
     (ours,) = left.values()
-    fewer = paper.error_map(2, rng=np.random.default_rng(46))
     with pytest.raises(ValueError, match="maps must have the same number of draws"):
-        paper.map_readings({"a": ours, "b": fewer}, published, 0)
+        paper.map_readings({"a": ours, "b": drawn}, published, 0)
     with pytest.raises(ValueError, match="error must have shape"):
         paper.map_score(ours.position[1:], published, 0)
 
