@@ -148,21 +148,24 @@ def scheme(figure: Figure, blocks: Sequence[tuple[str, str]]) -> None:
     blocks: From the first to the last; an empty name gives the input.
     """
     ax = figure.subplots()
-    columns = 3
+    columns, before = 3, None
     for i, (name, out) in enumerate(blocks):
         row, column = divmod(i, columns)
         way = 1 if row % 2 == 0 else -1  # every other row runs back
         x, y = 1.1 * (column if way > 0 else columns - 1 - column), -row
-        ax.text(
+        box = ax.text(
             x, y, name, ha="center", va="center", fontsize=9.5,
             bbox={"boxstyle": "round,pad=0.5", "fc": "#E8F1F8", "ec": OURS},
         )  # fmt: skip
-        ax.text(x, y - 0.33, out, ha="center", va="center", fontsize=8.5, color="#555555")
-        if i + 1 < len(blocks):
-            ends = ((x + 0.42 * way, y), (x + 0.68 * way, y))
-            if column == columns - 1:
-                ends = ((x, y - 0.43), (x, y - 0.75))
-            ax.annotate("", ends[1], ends[0], arrowprops={"arrowstyle": "->", "color": BOUND})
+        ax.text(x, y - 0.33, out, ha="center", va="center", fontsize=9, color=TRUTH)
+        if before is not None:
+            look = {"arrowstyle": "-|>", "color": BOUND, "shrinkA": 2, "shrinkB": 2}
+            look |= {"patchA": before.get_bbox_patch(), "patchB": box.get_bbox_patch()}
+            start = before.get_position()
+            if column == 0:  # down to the next row, from below what comes out
+                start, look["patchA"] = (x, y + 0.57), None
+            ax.annotate("", (x, y), start, arrowprops=look)
+        before = box
     ax.set(xlim=(-0.55, 2.75), ylim=(-1.45, 0.3))
     ax.axis("off")
 

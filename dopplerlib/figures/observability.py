@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
+from matplotlib.patheffects import withStroke
 
 from .._hints import Array
 from ..model.radar_array import RadarArray
@@ -196,7 +197,8 @@ def bound_maps(
         shown = np.clip(bound, levels[0], levels[-1])
         area = ax.contourf(y, x, shown, levels, norm=LogNorm(), cmap="viridis_r")
         lines = ax.contour(y, x, bound, [0.01, 0.1, 1], colors="white", linewidths=0.9)
-        ax.clabel(lines, fmt=lambda v: f"{100 * v:g} cm", fontsize=8)
+        for text in ax.clabel(lines, fmt=lambda v: f"{100 * v:g} cm", fontsize=8.5):
+            text.set_path_effects([withStroke(linewidth=2, foreground=TRUTH)])  # on bright areas
         ax.plot(array.positions[:, 1], 0 * array.positions[:, 1], "o", color=SENSOR,
                 ms=6, mec="white", clip_on=False)  # fmt: skip
         ax.set(title=label, xlabel="y (m)", aspect="equal", ylim=(0, x[-1]), xticks=[-0.4, 0, 0.4])
