@@ -8,7 +8,7 @@ import json
 import shutil
 import subprocess
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -289,6 +289,7 @@ SETTINGS = {
 }
 
 
+@cache
 def settings(name):
     """Return what an explorable begins with, as JSON."""
     return json.dumps(SETTINGS[name](), separators=(",", ":"))
