@@ -1,5 +1,6 @@
 """Build the book, and show how far it is."""
 
+import gc
 import re
 import sys
 from contextlib import redirect_stdout
@@ -37,6 +38,9 @@ def main(argv=None):
     parser(__doc__).parse_args(argv)
     from jupyter_book.cli.main import main as build  # here: it warns of what it imports
 
+    # Seldom, and hardly ever among all that has been read. Not at all would take gigabytes, since
+    # the trees of pages refer to themselves.
+    gc.set_threshold(200_000, 10, 1000)
     end_at_once()  # the builder would take an interruption for a failure of its own
     with alone(BOOK / "_build" / ".lock", "the book"):
         try:
