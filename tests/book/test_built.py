@@ -90,3 +90,11 @@ def test_no_link_has_the_name_of_a_file_for_its_text(pages):
         for words in re.findall(r'<a href="\w+\.html#cell-[^>]*>([^<]+)</a>', text)
     }
     assert {(page, words) for page, words in links if words in names} == set()
+
+
+def test_only_the_search_loads_its_index_and_icons_are_those_that_pages_show(pages, built_book):
+    loading = {page for page, text in pages.items() if "searchindex.js" in text}
+    # A page of source stays from an earlier build while its module has not changed.
+    assert {page for page in loading if not page.startswith("_modules/")} == {"search.html"}
+    icons = built_book / "_static" / "scripts" / "fontawesome.js"
+    assert icons.stat().st_size < 100_000

@@ -52,6 +52,10 @@ window.book = (() => {
     for (const formula of document.querySelectorAll(".math")) {
       if (!formula.querySelector("mjx-container svg")) found.push(`a formula is not set: ${name(formula)}`);
     }
+    // The theme's script puts pictures in the place of icons, and a mark where it has none.
+    for (const icon of document.querySelectorAll("i[class*=fa-], svg[data-icon]:has(.missing)")) {
+      found.push(`an icon is missing: ${name(icon)}`);
+    }
     for (const wrong of document.querySelectorAll("[data-mml-node=merror]")) {
       found.push(`a formula is wrong: ${wrong.textContent}`);
     }
