@@ -77,11 +77,11 @@ def unique_ids(app, doctree):
         ]
 
 
-def true_minus(app, doctree):
-    """Print a hyphen before a number as the minus that it is meant to be; code keeps it."""
+def true_signs(app, doctree):
+    """Print the minus that a hyphen before a number is meant to be, and powers; code keeps them."""
     for text in list(doctree.findall(nodes.Text)):
-        if isinstance(text.parent, PROSE) and HYPHEN.search(text):
-            text.parent.replace(text, nodes.Text(HYPHEN.sub("\u2212", text)))
+        if isinstance(text.parent, PROSE) and (printed := _printed(text)) != text:
+            text.parent.replace(text, nodes.Text(printed))
 
 
 def natural_sizes(app, doctree):
@@ -130,7 +130,7 @@ def repaired(body):
 
 
 def _printed(text):
-    """Return the text of a cell with the signs of print for those of a program."""
+    """Return a text with the signs of print for those of a program."""
     for typed, sign in SIGNS.items():
         text = text.replace(typed, sign)
     return HYPHEN.sub("\u2212", POWER.sub(_power, text))
@@ -175,7 +175,7 @@ def setup(app):
     """Register the extension with Sphinx."""
     app.config.html_search_scorer = str(Path(__file__).with_name("scorer.js"))
     app.connect("doctree-read", unique_ids)
-    app.connect("doctree-read", true_minus)
+    app.connect("doctree-read", true_signs)
     app.connect("doctree-read", natural_sizes)
     app.connect("build-finished", drop_old_pages)
     app.connect("html-page-context", describe, priority=800)  # when the theme has its buttons

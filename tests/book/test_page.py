@@ -102,10 +102,10 @@ def test_a_head_that_is_empty_is_none_and_one_with_text_stays():
 
 
 def test_a_hyphen_before_a_number_is_printed_as_a_minus_but_not_in_code():
-    tree = section(paragraph("at -4 dB (-5), 3-4, x-1"))
+    tree = section(paragraph("at -4 dB (-5), 3-4, x-1, 2e-09"))
     tree += nodes.paragraph("", "", nodes.literal("", "a -4"), nodes.emphasis("", "-2 m"))
-    page.true_minus(None, tree)
-    assert tree[0].astext() == "at \u22124 dB (\u22125), 3-4, x-1"
+    page.true_signs(None, tree)
+    assert tree[0].astext() == "at \u22124 dB (\u22125), 3-4, x-1, 2\u00b710\u207b\u2079"
     assert tree[1].astext() == "a -4\u22122 m"
     table = "<td>-1 (-2 to 3-4)</td><td><code>-1</code></td>"
     assert page.repaired(table) == "<td>\u22121 (\u22122 to 3-4)</td><td><code>-1</code></td>"
