@@ -1,20 +1,26 @@
 """What holds for the figures of every module."""
 
+import inspect
 import re
+from importlib import import_module
+from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.colors import to_rgb, to_rgba_array
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from dopplerlib import figures
 from dopplerlib.figures.style import PUBLISHED
+
+MODULES = sorted({path.stem for path in Path(figures.__path__[0]).glob("[!_]*.py")} - {"style"})
 
 SMALLEST = 8  # points: 12 px on a page that shows a figure of seven inches at full width
 SLACK = 2  # px: boxes of letters have air around them
 NEAR = 12  # px: a mark this close above or beside a legend reads as one of its entries
 PALE = 2.2  # contrast below which letters on white are hard to read, even beside a bold line
+RENDERER = RendererAgg(1120, 1120, 160)  # px, and dots in an inch, as in the style of the book
 # Whose a curve in the color of what is published may be.
 _THEIRS = re.compile(r"\b(publish|paper|thesis|report|document|Table|Fig|Eq)")
 
@@ -25,66 +31,74 @@ _PURE = (
 )
 
 
-def check_figures(module, figures, *, made_up=()):
-    """Fail if a public function of the module has no figure, or one does not fit a page.
-
-    `figures` has a figure by the name of each function. Nothing in it lies on a text; of those in
-    `made_up` the curves may run through the legend, since they are nobody's results.
-    """
-    public = {
-        name
-        for name, value in vars(module).items()
-        if getattr(value, "__module__", "") == module.__name__ and not name.startswith("_")
+def drawings(module):
+    """Return the public functions of a module of figures by name."""
+    return {
+        name: function
+        for name, function in vars(import_module(f"dopplerlib.figures.{module}")).items()
+        if inspect.isfunction(function)
+        and function.__module__.endswith(f".{module}")
+        and not name.startswith("_")
     }
-    assert public == set(figures)
-    for name, figure in figures.items():
-        assert figure.get_figwidth() == 7, name  # all pages show it equally large: so do letters
-        figure.draw_without_rendering()
-        assert overlaps(figure) == [], name
-        assert (covered(figure) != []) == (name in made_up), name
-    assert plt.get_fignums() == []
 
 
-def _texts(figure):
-    """Return (text, box) of all that is written in a laid out figure, boxes in px."""
-    renderer = FigureCanvasAgg(figure).get_renderer()
+def check_figure(figure):
+    """Fail if a figure does not fit a page, or a text of it cannot be read or lacks its unit."""
+    name = figure.get_label()
+    assert figure.get_figwidth() == 7, name  # all pages show it equally large: so do letters
+    lay_out(figure)
+    written = [text for text in figure.findobj(Text) if text.get_text().strip()]
+    check_labels(figure)
+    check_colors(figure, written)
+    assert small(written) == pale(written) == [], name
+    assert overlaps(figure, written) == [], name
+
+
+def lay_out(figure):
+    """Find out where everything is drawn."""
+    # One renderer for all figures remembers the sizes of words.
+    figure.canvas.get_renderer = lambda: RENDERER
+    with RENDERER._draw_disabled():
+        figure.draw(RENDERER)
+
+
+def _axes(figure):
+    """Return the axes of a figure, those inside others as well, which show another unit."""
+    return [one for ax in figure.axes for one in (ax, *ax.child_axes)]
+
+
+def _shown(figure, written):
+    """Return which texts of a laid out figure are drawn."""
     hidden = set()
-    for axis in (getattr(ax, f"{name}axis") for ax in figure.axes for name in ax._axis_names):
+    for axis in (getattr(ax, f"{name}axis") for ax in _axes(figure) for name in ax._axis_names):
         low, high = sorted(axis.get_view_interval())
         for tick in axis.get_major_ticks() + axis.get_minor_ticks():
             if not low <= tick.get_loc() <= high:  # beyond the view: not drawn
                 hidden |= {tick.label1, tick.label2}
         if not (axis.axes.axison and axis.axes.get_visible()):
             hidden |= set(axis.findobj(Text))
-    return [
-        (text, text.get_window_extent(renderer))
-        for text in figure.findobj(Text)
-        if text.get_text().strip() and text.get_visible() and text not in hidden
-    ]
+    return [text for text in written if text.get_visible() and text not in hidden]
 
 
-def small(figure):
+def small(written):
     """Return the texts that a reader has to come closer for."""
     return [
-        text.get_text()
-        for text in figure.findobj(Text)
-        if text.get_text().strip() and text.get_visible() and text.get_fontsize() < SMALLEST
+        text.get_text() for text in written if text.get_visible() and text.get_fontsize() < SMALLEST
     ]
 
 
-def pale(figure):
+def pale(written):
     """Return the texts that hardly stand out from the white of the page."""
 
     def contrast(color):
         linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color[:3]]
         return 1.05 / (np.dot(linear, [0.2126, 0.7152, 0.0722]) + 0.05)
 
-    texts = [text for text in figure.findobj(Text) if text.get_text().strip()]
-    levels = {text.get_text(): contrast(to_rgb(text.get_color())) for text in texts}
+    levels = {text.get_text(): contrast(to_rgb(text.get_color())) for text in written}
     return [text for text, level in levels.items() if 1 < level < PALE]  # white is on something
 
 
-def check_colors(figure):
+def check_colors(figure, written):
     """Fail if something has the color of what is published, and the figure names no document."""
     artists = [artist for ax in figure.axes for artist in (*ax.lines, *ax.collections, *ax.patches)]
     colors = [
@@ -94,20 +108,21 @@ def check_colors(figure):
         if hasattr(artist, f"get_{part}")
     ]
     theirs = any((to_rgb(PUBLISHED) == one[:, :3]).all(axis=1).any() for one in colors if one.size)
-    assert not theirs or any(_THEIRS.search(text.get_text()) for text in figure.findobj(Text))
+    assert not theirs or any(_THEIRS.search(text.get_text()) for text in written)
 
 
-def overlaps(figure):
-    """Return the pairs of texts that lie on each other."""
-    found = _texts(figure)
-    ends = np.array([box.extents for _, box in found]).reshape(-1, 2, 2)
+def overlaps(figure, written):
+    """Return the pairs of texts of a laid out figure that lie on each other."""
+    found = _shown(figure, written)
+    boxes = [text.get_window_extent(RENDERER).extents for text in found]
+    ends = np.reshape(boxes, (-1, 2, 2))
     common = np.minimum(ends[:, None, 1], ends[:, 1]) - np.maximum(ends[:, None, 0], ends[:, 0])
     pairs = np.argwhere(np.triu((common > SLACK).all(axis=-1), 1))
-    return [(found[i][0].get_text(), found[j][0].get_text()) for i, j in pairs]
+    return [(found[i].get_text(), found[j].get_text()) for i, j in pairs]
 
 
 def covered(figure):
-    """Return the labels of lines that run through a legend of their axes."""
+    """Return the labels of lines of a laid out figure that run through a legend of their axes."""
     found = []
     for ax in figure.axes:
         if (legend := ax.get_legend()) is None:
@@ -129,7 +144,7 @@ def covered(figure):
 
 def labels(figure):
     """Return the labels of all axes of a figure that are shown."""
-    axes = [ax for ax in figure.axes if ax.axison and ax.get_visible()]
+    axes = [ax for ax in _axes(figure) if ax.axison and ax.get_visible()]
     every = [getattr(ax, f"get_{name}label", str)() for ax in axes for name in "xyz"]
     return [label for label in [*every, figure.get_supxlabel(), figure.get_supylabel()] if label]
 

@@ -192,7 +192,8 @@ def _cut(array, x, around):
     directions = iso_doppler_directions(x, array, around)
     distance = np.full(directions.shape[:2], np.nan)
     ahead = x[0] - array.positions[:, :1]
-    np.divide(ahead, directions[..., 0], out=distance, where=ahead * directions[..., 0] > 0)
+    meets = np.sign(ahead) * directions[..., 0] > 1e-12  # beyond rounding of a unit vector
+    np.divide(ahead, directions[..., 0], out=distance, where=meets)
     return array.positions[:, None] + distance[..., None] * directions
 
 

@@ -42,13 +42,15 @@ def drawing(width: float = 7.0, height: float = 4.0):
 
     The function gets the figure, in the style of the book, as its first argument; the others are
     checked by their hints. A hyphen before a number becomes the minus that the axes have. The
-    figure is not registered with pyplot: the caller alone holds it.
+    figure is labeled with the name of the function, and not registered with pyplot: the caller
+    alone holds it.
     """
 
     def decorate(draw: Callable[Concatenate[Figure, _P], None]) -> Callable[_P, Figure]:
         def new(*args, **kwargs):
             with as_file(STYLE) as path, plt.style.context(path):
                 figure = plt.figure(figsize=(width, height))
+                figure.set_label(draw.__name__)
                 plt.close(figure)
                 draw(figure, *args, **kwargs)
                 for text in figure.findobj(Text):

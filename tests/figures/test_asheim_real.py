@@ -5,7 +5,9 @@ import pytest
 
 from dopplerlib.figures import asheim_real as draw
 from dopplerlib.tracking.multi_target import ManagedTrack
-from tests.drawn import check_figures, lines
+from tests.drawn import lines
+
+MADE_UP = {"coasting"}
 
 TIME = np.arange(50.0)
 SENSORS = np.array([[-0.5, 0.0], [0.5, 0.0]])
@@ -44,7 +46,3 @@ def test_managed_tracks_stand_at_their_scans_and_each_has_its_mark(figures):
     assert tracks[0].get_xydata().tolist() == [[0, 1], [1, 1], [2, 1]]
     assert tracks[0].get_marker() != tracks[1].get_marker()
     assert len(left.lines) == 4
-
-
-def test_every_figure_fits_the_page(figures):
-    check_figures(draw, figures, made_up=["coasting"])

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from dopplerlib.figures import asheim_two as draw
-from tests.drawn import check_figures, lines
+from tests.drawn import lines
+
+MADE_UP = {"error_over_distance"}
 
 TIME = np.arange(50.0)
 SENSORS = np.array([[-0.5, 0.0], [0.5, 0.0]])
@@ -37,13 +39,7 @@ def test_the_last_positions_of_a_panel_are_the_estimate():
     np.testing.assert_array_equal(shown["filtered"].get_xydata(), PLACES + 2)
 
 
-def test_every_figure_fits_the_page():
-    figures = {
-        "error_areas": draw.error_areas(
-            TARGET, SENSORS, [np.ones(2)], [np.ones((9, 2))], ("a", "b")
-        ),
-        "plane": draw.plane(PLACES, [{"a": PLACES, "b": PLACES}], SENSORS, UNIT, ["t"]),
-        "triangulated": draw.triangulated(TIME, PLACES, PLACES, PLACES, SENSORS, UNIT),
-        "error_over_distance": draw.error_over_distance(TIME, {"one filter": np.ones((2, 50))}),
-    }
-    check_figures(draw, figures)
+def test_positions_from_two_ranges_are_drawn():
+    figure = draw.triangulated(TIME, PLACES, PLACES, PLACES, SENSORS, UNIT)
+    drawn = [line.get_xydata() for ax in figure.axes for line in ax.lines]
+    assert any(np.array_equal(one, PLACES) for one in drawn)

@@ -6,7 +6,6 @@ from numpy.testing import assert_allclose
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import benchmarks as draw
-from tests.drawn import check_figures
 
 TIMES = {
     "one run": {"dopplerlib": [0.4, 0.5, 0.9], "C": [0.3, 0.35, 0.3]},
@@ -41,10 +40,6 @@ def figures():
         "memory": draw.memory({"one": 57.0, "other": 680.0}, {"one": 60.0, "other": 700.0}),
         "growth": draw.growth(dict.fromkeys(fits, line), fits),
     }
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
 
 
 def test_markers_are_at_medians_lines_reach_least_and_most_and_a_name_has_one_row(figures):

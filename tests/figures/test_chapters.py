@@ -2,7 +2,6 @@
 
 import inspect
 import re
-from importlib import import_module
 from pathlib import Path
 from typing import get_args, get_origin, get_type_hints
 
@@ -10,33 +9,19 @@ import numpy as np
 import pytest
 
 from dopplerlib import _hints
-from tools.notebooks import ROOT, chapters, stored_cells
+from tests.drawn import MODULES, drawings
+from tools.notebooks import chapters, stored_cells
 
 CODE = {
     path.stem: "\n".join(c.source for c in stored_cells(path) if c.cell_type == "code")
     for path in chapters()
 }
-MODULES = sorted(
-    path.stem
-    for path in Path(ROOT, "dopplerlib", "figures").glob("[!_]*.py")
-    if path.stem != "style"
-)
 IMPORT = re.compile(r"from dopplerlib\.figures(?:\.(\w+))? import (.+)")
 
 
-def drawings(module):
-    """Return the public functions of a module of figures by name."""
-    return {
-        name: function
-        for name, function in vars(import_module(f"dopplerlib.figures.{module}")).items()
-        if inspect.isfunction(function)
-        and function.__module__.endswith(f".{module}")
-        and not name.startswith("_")
-    }
-
-
 @pytest.mark.parametrize("module", MODULES)
-def test_a_module_of_figures_has_its_chapter_that_calls_it_draw(module):
+def test_a_module_of_figures_has_its_tests_and_its_chapter_that_calls_it_draw(module):
+    assert Path(__file__).with_name(f"test_{module}.py").exists()
     wanted = f"from dopplerlib.figures import {module} as draw"
     assert CODE[module].count(wanted) == 1
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from dopplerlib.figures import coordinates as draw
-from tests.drawn import check_figures, check_legends, lines
+from tests.drawn import check_legends, lines
 
 CLAIMS = {"one": np.geomspace(0.2, 0.02, 8), "two": np.full(8, 0.2)}
 ERRORS = {"one": np.full(8, 0.3), "two": np.geomspace(0.2, 0.25, 8)}
@@ -24,10 +24,6 @@ def figures():
         "valleys": draw.valleys(Y, Z, {"a": BOWL, "b": 2 * BOWL}, STATES),
         "three_steps": draw.three_steps(ACROSS, AHEAD, DENSITY, DRAWS, np.array([0.1, 0.8])),
     }
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
 
 
 def test_claims_and_errors_have_a_panel_each(figures):

@@ -4,6 +4,8 @@ import numpy as np
 
 from dopplerlib.figures import derivation
 
+MADE_UP = {"derivative_errors"}
+
 
 def curves(figure):
     """Return the curves of the only axes by label."""

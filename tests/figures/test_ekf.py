@@ -5,6 +5,8 @@ import pytest
 
 from dopplerlib.figures import ekf as draw
 
+MADE_UP = {"covariance_health"}
+
 
 def test_bands_reach_two_deviations():
     time = np.arange(5.0)
@@ -43,7 +45,7 @@ def test_covariance_health_draws_asymmetry_and_marks_a_series_that_ends_early():
 
 def test_tangent_and_second_order_and_gap_keep_their_scales():
     step = np.linspace(-1, 1, 5)
-    _, right = draw.tangent(step, step**2, 0 * step, 0.4).axes
+    _, right = draw.tangent(step, step**2 - 4 * step, -4 * step, 0.4).axes
     assert right.lines[0].get_ydata() == pytest.approx(step**2)
     ax = draw.second_order(step + 2, {"a": step + 2}, "ratio to the noise").axes[0]
     assert ax.lines[0].get_ydata() == pytest.approx(step + 2)

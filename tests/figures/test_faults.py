@@ -21,7 +21,8 @@ def test_a_share_is_a_color_and_a_number():
 
 def test_numbers_can_be_read_on_their_color():
     """By WCAG 2.1, which asks for a contrast of 4.5; black or white always has it."""
-    shares = {str(percent): {"one": percent / 100} for percent in range(101)}
+    share = iter(np.linspace(0, 1, 100))
+    shares = {str(row): {str(column): next(share) for column in range(10)} for row in range(10)}
     ax, _ = draw.fault_map(shares, "lost targets").axes
     (image,) = ax.images
     for text in ax.texts:

@@ -10,7 +10,7 @@ from dopplerlib.systems.mittermaier2016 import NoiseSweep, PublishedFigure4, noi
 NOISE_LEVELS = noise_levels()
 ERROR = 0.2 * np.sqrt(NOISE_LEVELS)[:, None] * np.linspace(0.8, 1.2, 5)
 OURS = NoiseSweep(NOISE_LEVELS, ERROR, 2 * ERROR, ERROR / 2, ERROR, 0.9 * ERROR, 1.8 * ERROR)
-DOTS = PublishedFigure4(NOISE_LEVELS, 1.1 * ERROR, 2.1 * ERROR)
+DOTS = PublishedFigure4(NOISE_LEVELS, 0.9 * ERROR, 1.9 * ERROR)
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import pytest
 from dopplerlib import chi2_interval
 from dopplerlib.figures import figure6 as draw
 from dopplerlib.systems import mittermaier2016 as paper
-from tests.drawn import check_figures, check_legends, lines
+from tests.drawn import check_legends, lines
 
 RUNS, RUN = 20, 3
 INTERVAL = (1.2, 14.4)
@@ -58,10 +58,6 @@ def assert_shows(line, x, y):
 
 
 NAMES = ["scene", "errors", "error_bands", "nis", "nis_averages", "skipped_counts"]
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
 
 
 @pytest.mark.parametrize("name", NAMES)

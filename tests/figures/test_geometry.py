@@ -83,6 +83,7 @@ def test_the_sensitivities_are_in_hertz_per_centimeter():
 def test_lines_of_a_cone_that_never_reach_the_plane_are_left_out():
     # Zero shift: the cone is a plane through the sensor, and half of it lies behind the sensor.
     sensor = RadarArray([[0, 0, 0]])
-    rim = draw.iso_doppler_cones(sensor, [1, 1, 0, 1, -1, 0]).axes[1].lines[0].get_xydata()
-    assert_allclose(rim[0], [1, 0], atol=1e-12)
-    assert np.isnan(rim[90]).all()
+    plane = draw.iso_doppler_cones(sensor, [1, 0.5, 0.5, 1, -1, -1]).axes[1]
+    rim = plane.lines[0].get_xydata()
+    assert_allclose(rim[0], [0.5, 0.5], atol=1e-12)
+    assert np.isnan(rim[90]).all() and np.nanmax(np.abs(rim)) < 100

@@ -7,7 +7,6 @@ from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import layouts as draw
 from dopplerlib.workspace.layout_results import LayoutErrors
 from dopplerlib.workspace.layouts import named_layouts
-from tests.drawn import check_figures, check_labels
 
 ARRAYS = named_layouts()
 PLACES = np.arange(1.0, 4), np.arange(2.0)
@@ -33,15 +32,6 @@ def figures():
         "losses": draw.losses(found, {"one": [errors(3.0)] * 2, "two": [errors(4.0)] * 3}),
         "maps": draw.maps(*PLACES, VALUES, VALUES),
     }
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
-
-
-def test_every_axis_says_its_unit(figures):
-    for figure in figures.values():
-        check_labels(figure)
 
 
 def test_every_sensor_is_drawn_where_it_stands_and_hollow_if_it_is_set_back(figures):

@@ -5,7 +5,6 @@ import pytest
 
 from dopplerlib.figures import macaveiu as draw
 from dopplerlib.systems.macaveiu2013 import SLOPES
-from tests.drawn import check_figures
 
 TIME = np.arange(6.0)
 
@@ -73,19 +72,3 @@ def test_a_scene_names_its_tracks_once():
     assert labels == ["track", "object", "truth"]
     with pytest.raises(KeyError):
         draw.scene({"all": {"something": np.ones((3, 2))}}, np.zeros((6, 4)))
-
-
-def test_every_figure_fits_the_page():
-    relations, target = np.array([[2.0, 1.0], [-2.0, 1.0]]), np.array([[10.0, 3.0]])
-    tones = [relations[0] @ target.T, relations[1] @ target.T]
-    pixels = (TIME[:4], TIME[:3] - 1, -np.ones((3, 4)), {"here": (1.0, 0.0)})
-    figures = {
-        "sketches": draw.sketches(),
-        "pulses": draw.pulses(TIME, 1j * TIME, TIME - 3, {"a": -TIME}),
-        "ghosts": draw.ghosts({"one": (relations, tones, target, target)}, (0.0, 20.0)),
-        "solved": draw.solved({"a": np.ones((3, 1, 2))}, {"a": target}),
-        "maps": draw.maps({"one": pixels, "two": pixels}),
-        "scheme": draw.scheme([("block", "out")] * 6),
-        "scene": draw.scene({"all": {"object": np.ones((3, 2))}}, np.zeros((6, 4))),
-    }
-    check_figures(draw, figures)

@@ -5,7 +5,6 @@ import pytest
 
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import macaveiu_beyond as draw
-from tests.drawn import check_figures
 
 TIME = np.arange(6.0)
 TURN = TIME > 3
@@ -35,15 +34,3 @@ def test_crossings_show_a_share_with_its_interval_at_every_angle():
     left, right = draw.crossings(truth, truth + 1, shares, (10, 20)).axes
     assert len(left.lines) == 4
     assert right.containers[0].lines[0].get_xydata().tolist() == [[10, 0.5], [20, 0.1]]
-
-
-def test_every_figure_fits_the_page():
-    truth = np.zeros((2, 6, 4))
-    shares = {"a": [ConfidenceInterval(0.5, 0.4, 0.6)]}
-    figures = {
-        "side_by_side": draw.side_by_side(TIME, truth[0], {"a": truth}),
-        "hole": draw.hole(TIME, {"a": TIME}, 0.2, {"b": TIME + 1}),
-        "over_time": draw.over_time(TIME, {"a": TIME + 1}, TURN, "error (m)", TIME / 6),
-        "crossings": draw.crossings(truth, truth, shares, (10,)),
-    }
-    check_figures(draw, figures)

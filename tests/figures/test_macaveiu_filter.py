@@ -6,7 +6,9 @@ import pytest
 from dopplerlib.evaluation.intervals import ConfidenceInterval
 from dopplerlib.figures import macaveiu_filter as draw
 from dopplerlib.systems import macaveiu2013 as system
-from tests.drawn import check_figures
+
+MADE_UP = {"nis_and_nees"}
+
 
 TIME = np.arange(6.0)
 
@@ -65,15 +67,3 @@ def test_averages_of_nis_and_nees_stand_in_their_panels():
     pair = (TIME + 1, TIME + 2)
     nis, nees = draw.nis_and_nees(TIME, {"a": pair}, ((3, 5), (2, 6))).axes
     assert nis.lines[0].get_ydata()[0] == 1 and nees.lines[0].get_ydata()[0] == 2
-
-
-def test_every_figure_fits_the_page(runs):
-    shares = {str(i): np.full((3, 2, 2), 0.5) for i in range(4)}
-    grid, s = ((0.5, 1.0), (0.01, 0.1)), system.automotive_settings().with_(sigma_x=0.5, w=0.1)
-    figures = {
-        "three_panels": draw.three_panels(TIME, runs),
-        "claim_map": draw.claim_map(("sigma_x", grid[0]), ("w", grid[1]), shares, s),
-        "lags": draw.lags(grid[1], np.ones((2, 2)), np.ones((2, 2)), {}),
-        "nis_and_nees": draw.nis_and_nees(TIME, {"a": (TIME + 1,) * 2}, ((3, 5), (2, 6))),
-    }
-    check_figures(draw, figures, made_up=["nis_and_nees"])

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from dopplerlib import RadarArray, ring_family
 from dopplerlib.figures import observability as draw
 from dopplerlib.figures.style import project
-from tests.drawn import check_figures, lines
+from tests.drawn import lines
 
 RING, LINE = RadarArray.ring(6, 0.2), RadarArray.linear(5, 0.4)
 STATE = np.array([0.833, 0.111, 0.092, -0.75, -0.125, -0.018])
@@ -49,10 +49,6 @@ def figures():
             TIME, {"ring": TIME**-1.5, "more": TIME**-0.5}, 2 * TIME**-1.5, {"Table 2": (0.01, 0.1)}
         ),
     }
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
 
 
 def test_the_contours_are_at_one_two_and_three_deviations(figures):

@@ -6,7 +6,6 @@ import pytest
 from dopplerlib.chain.ridges import Ridge
 from dopplerlib.figures import road as draw
 from dopplerlib.signal.spectrogram import spectrogram
-from tests.drawn import check_figures, check_labels
 
 TIME = np.linspace(0.1, 0.9, 30)
 RIDGE = Ridge(TIME, -200 - 10 * TIME, 2 + TIME, np.full(30, 0.3), 100, 25, "hann")
@@ -20,15 +19,6 @@ def figures():
         "ridges": draw.ridges(seen, [RIDGE, RIDGE]),
         "deviations": draw.deviations(RIDGE, -200 - 9 * TIME),
     }
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
-
-
-def test_every_axis_says_its_unit(figures):
-    for figure in figures.values():
-        check_labels(figure)
 
 
 def test_ridges_are_drawn_over_positive_frequencies(figures):

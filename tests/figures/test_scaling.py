@@ -5,7 +5,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from dopplerlib.figures import scaling as draw
-from tests.drawn import check_figures
 
 RUNS, WIDTH = np.array([10, 40, 160]), np.array([3.1, 1.4, 0.8])
 TIMED, SECONDS = np.array([100, 1000]), np.array([0.4, 3.1])
@@ -15,10 +14,6 @@ TIMED, SECONDS = np.array([100, 1000]), np.array([0.4, 3.1])
 def figures():
     found = draw.gain_and_cost(RUNS, WIDTH, TIMED, SECONDS, 0.003, (1, 100, 1000))
     return {"gain_and_cost": found}
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
 
 
 def test_numbers_are_where_they_belong_and_lines_go_on_from_them(figures):

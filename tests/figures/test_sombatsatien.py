@@ -4,7 +4,6 @@ import numpy as np
 
 from dopplerlib.figures import sombatsatien as draw
 from dopplerlib.systems import sombatsatien as student
-from tests.drawn import check_figures
 
 
 def test_symptoms_show_the_runs_the_truth_and_the_end_of_the_report():
@@ -40,14 +39,3 @@ def test_an_alarm_that_was_raised_is_not_forgotten():
     (ax,) = draw.alarm_shares((1, 10, 100), {"filter": {"NIS average": hits}}).axes
     np.testing.assert_array_equal(ax.get_lines()[0].get_ydata(), [0.5, 0.5, 1.0])
     assert ax.get_xlabel() == "samples"
-
-
-def test_every_figure_fits_the_page():
-    result = student.post_mortem(4, rng=np.random.default_rng(1))
-    rows = {"none": {"error (m)": np.arange(1.0, 9)}}
-    figures = {
-        "symptoms": draw.symptoms(result, student.reported().run),
-        "repair_ranges": draw.repair_ranges(rows, {"error (m)": ("report", 5.0)}),
-        "alarm_shares": draw.alarm_shares((1, 2), {"a": {"b": np.ones((3, 2), bool)}}),
-    }
-    check_figures(draw, figures)

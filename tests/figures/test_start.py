@@ -6,7 +6,6 @@ from numpy.testing import assert_allclose
 
 from dopplerlib import RadarArray
 from dopplerlib.figures import start as draw
-from tests.drawn import check_figures
 
 ACROSS, UP = np.linspace(-1, 1, 21), np.linspace(0, 1, 11)
 COST = 7 + (10 * (ACROSS - 0.2)) ** 2 + (10 * (UP[:, None] - 0.5)) ** 2
@@ -44,10 +43,6 @@ def figures():
         ),
         "wrong_windows": draw.wrong_windows({"road": {"line": WRONG}, "ring": {"line": 2 * WRONG}}),
     }
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
 
 
 def test_the_white_line_is_three_deviations_from_the_best(figures):

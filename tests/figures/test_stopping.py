@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from dopplerlib.figures import stopping as draw
-from tests.drawn import check_figures, check_labels
 
 TIME = np.array([0.005, 0.01, 0.015])
 CURVE = np.array([[0.2, 0.3], [0.1, 0.2], [0.0, -np.inf]])
@@ -27,15 +26,6 @@ def figures():
         "warned_by_time": draw.warned_by_time({"truth": ALARMS}, (0.04, 0.08)),
         "stopped_by_miss": draw.stopped_by_miss([0.0, 0.05, 0.1, 0.3], {"sum": STOPPED}),
     }
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
-
-
-def test_every_axis_says_its_unit(figures):
-    for figure in figures.values():
-        check_labels(figure)
 
 
 def test_probabilities_and_times_that_are_named_are_drawn(figures):

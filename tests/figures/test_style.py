@@ -39,14 +39,14 @@ def test_sensors_have_colors_of_their_own(n):
 def test_a_drawing_gets_a_figure_and_returns_it():
     got = []
 
-    @style.drawing(3.0, 2.0)
+    @style.drawing(7.0, 2.0)
     def draw(figure: Figure, number: float, *, label: str = "") -> None:
         """Draw nothing."""
         got.append((figure, number, label))
         figure.text(0, 0, "-4 dB, x-1")
 
     figure = draw(1, label="one")
-    assert got == [(figure, 1.0, "one")] and figure.get_size_inches().tolist() == [3.0, 2.0]
+    assert got == [(figure, 1.0, "one")] and figure.get_size_inches().tolist() == [7.0, 2.0]
     assert list(inspect.signature(draw).parameters) == ["number", "label"]
     assert [text.get_text() for text in figure.texts] == ["\N{MINUS SIGN}4 dB, x-1"]
     with pytest.raises(ValueError, match=r"^number must be an array of real numbers, got 'x'"):

@@ -5,7 +5,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from dopplerlib.figures import yardsticks as draw
-from tests.drawn import check_figures
 
 RNG = np.random.default_rng(1)
 CLOUD = RNG.uniform(-0.3, 0.3, (40, 2))
@@ -38,10 +37,6 @@ def figures():
         "shells": draw.shells(EDGES, SHELLS, ("arithmetic", "harmonic")),
         "nees": draw.nees(NEES, Q, np.ones(31) / 30, {"one": (5.8, 6.2), "other": (5.5, 6.1)}),
     }  # fmt: skip
-
-
-def test_every_figure_of_the_module_is_here_fits_the_page_and_does_not_stay_with_pyplot(figures):
-    check_figures(draw, figures)
 
 
 def test_posteriors_are_the_draws_beside_truth_twin_and_bound(figures):
