@@ -8,17 +8,19 @@ from matplotlib.patches import Ellipse
 
 from .._hints import Array
 from ..workspace.errors import ErrorSummary
-from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, TRUTH, drawing, plain_log_ticks
+from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SKY, TRUTH, drawing, looks, plain_log_ticks
 
-# Trackers are told from each other by color and line.
-STYLES = (
-    (OURS, "-"),
-    (PUBLISHED, "--"),
-    (ORANGE, "-."),
-    (PINK, "-"),
-    (TRUTH, ":"),
-    (BOUND, "-"),
-)
+# Trackers of the workspace have one look each, in the chapter on the decision to stop as well.
+TRACKERS = {
+    "truth": (TRUTH, ":", "x"),
+    "sum": (OURS, "-", "o"),
+    "paper": (PUBLISHED, "--", "s"),
+    "P = 0.1 I": (PUBLISHED, "--", "s"),
+    "Bayes": (ORANGE, "-.", "^"),
+    "IEKF": (SKY, "-.", "P"),
+    "UKF": (PINK, ":", "D"),
+    "EKF": (PINK, "--", "v"),
+}
 # Settings of one tracker: right, two of sigma_f, two of sigma_a, and another prior.
 _SETTINGS = (
     (OURS, "-"),
@@ -98,7 +100,8 @@ def nees(figure: Figure, cases: dict[str, dict[str, ErrorSummary]]) -> None:
     """
     panels = figure.subplots(2, len(cases), sharex=True, sharey=True, squeeze=False)
     for (mean, median), (title, trackers) in zip(panels.T, cases.items(), strict=True):
-        for (label, found), (color, ls) in zip(trackers.items(), STYLES, strict=False):
+        for label, (color, ls, _) in looks(trackers, TRACKERS).items():
+            found = trackers[label]
             mean.plot(found.time, found.nees, color=color, ls=ls, label=label)
             width = np.where(4 * found.nees_error < found.nees, 2 * found.nees_error, np.nan)
             band = found.nees - width, found.nees + width
@@ -122,7 +125,8 @@ def over_bound(figure: Figure, cases: dict[str, dict[str, ErrorSummary]]) -> Non
     """
     panels = figure.subplots(-(-len(cases) // 2), 2, sharex=True, sharey=True, squeeze=False)
     for ax, (title, trackers) in zip(panels.ravel(), cases.items(), strict=False):
-        for (label, found), (color, ls) in zip(trackers.items(), STYLES, strict=False):
+        for label, (color, ls, _) in looks(trackers, TRACKERS).items():
+            found = trackers[label]
             ratio = found.position / found.position_bound
             ax.plot(found.time, ratio, color=color, ls=ls, label=label)
         ax.axhline(1, color=BOUND, lw=0.8, label="bound")

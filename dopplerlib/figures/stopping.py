@@ -5,18 +5,9 @@ from matplotlib.figure import Figure
 
 from .._hints import Array, Index
 from ..workspace.stopping import NEAR_MISS, RADIUS
-from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, drawing
+from .consistent_tracker import TRACKERS
+from .style import BOUND, TRUTH, drawing, looks
 
-# Color, line and mark of trackers in the order in which they are given, the truth first.
-_STYLES = (
-    (TRUTH, ":", "x"),
-    (OURS, "-", "o"),
-    (PUBLISHED, "--", "s"),
-    (ORANGE, "-.", "^"),
-    (PINK, "--", "D"),
-    (SENSOR, "-.", "v"),
-    (BOUND, ":", "P"),
-)
 _PERCENT = 100
 
 
@@ -37,8 +28,8 @@ def one_approach(
     """
     axes = figure.subplots(len(panels), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     for ax, (title, curves) in zip(axes, panels.items(), strict=True):
-        for (label, curve), (color, line, _) in zip(curves.items(), _STYLES[1:], strict=False):
-            ax.plot(time, curve, line, color=color, label=label)
+        for label, (color, line, _) in looks(curves, TRACKERS).items():
+            ax.plot(time, curves[label], line, color=color, label=label)
         ax.axhline(threshold, color=BOUND, lw=0.8)
         for name, at in marks[title].items():
             ax.axvline(at, color=TRUTH, ls=":", lw=1)
@@ -64,8 +55,9 @@ def lead_by_false_alarms(
     """
     axes = figure.subplots(1, len(curves), squeeze=False)[0]
     for ax, (rule, trackers) in zip(axes, curves.items(), strict=True):
-        for (label, curve), (color, line, mark) in zip(trackers.items(), _STYLES, strict=False):
-            false, lead = _PERCENT * curve[:, 0], np.maximum(curve[:, 1], 0.0)
+        for label, (color, line, mark) in looks(trackers, TRACKERS).items():
+            false, lead = trackers[label].T
+            false, lead = _PERCENT * false, np.maximum(lead, 0.0)
             ax.plot(
                 false, lead, line, color=color, lw=1.2, marker=mark, ms=4, mfc="white", mew=0.9,
                 label=label,
@@ -89,8 +81,8 @@ def warned_by_time(figure: Figure, alarms: dict[str, Array], shaded: tuple[float
     """
     ax = figure.subplots()
     ax.axvspan(*shaded, color=BOUND, alpha=0.2, lw=0)
-    for (label, times), (color, line, _) in zip(alarms.items(), _STYLES, strict=False):
-        times = np.sort(times)
+    for label, (color, line, _) in looks(alarms, TRACKERS).items():
+        times = np.sort(alarms[label])
         share = _PERCENT * np.arange(1, len(times) + 1) / len(times)
         ax.step(times, share, line, color=color, where="post", label=label)
     ax.set(
@@ -112,8 +104,8 @@ def stopped_by_miss(figure: Figure, edges: Array, curves: dict[str, Array]) -> N
     ax.axvspan(*(_PERCENT * d for d in NEAR_MISS), color=BOUND, alpha=0.25, lw=0)
     ax.axvline(_PERCENT * RADIUS, color=TRUTH, ls=":", lw=1)
     middle = _PERCENT * (edges[1:] + edges[:-1]) / 2
-    for (label, curve), (color, line, mark) in zip(curves.items(), _STYLES[1:], strict=False):
-        value, low, high = _PERCENT * curve.T
+    for label, (color, line, mark) in looks(curves, TRACKERS).items():
+        value, low, high = _PERCENT * curves[label].T
         ax.errorbar(
             middle, value, [value - low, high - value], color=color, ls=line, marker=mark, ms=4,
             lw=1.2, elinewidth=0.8, label=label,

@@ -28,7 +28,7 @@ BOUND = "#777777"
 MEASURED = "#999999"  # what a radar says, beside what a filter makes of it
 
 # Colors of the palette without a meaning, for what a single figure compares.
-ORANGE, PINK = "#E69F00", "#CC79A7"
+ORANGE, PINK, SKY = "#E69F00", "#CC79A7", "#56B4E9"
 # Variants of one filter, each with its own line for print in gray.
 VARIANTS = ((OURS, "-"), (ORANGE, "--"), (PINK, "-."), (TRUTH, ":"))
 # Sensors in their order, all of the hue that means "sensor": dark to light, and labeled as well.

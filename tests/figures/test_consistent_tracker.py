@@ -5,7 +5,10 @@ import pytest
 from scipy.stats import chi2
 
 from dopplerlib.figures import consistent_tracker as draw
+from dopplerlib.figures.style import SENSOR, looks
 from dopplerlib.workspace.errors import ErrorSummary
+from dopplerlib.workspace.stop_study import LABELS
+from dopplerlib.workspace.trackers import TRACKERS
 
 
 def summary(level, bound=0.01):
@@ -40,7 +43,7 @@ def test_members_are_ellipses_as_dark_as_they_are_likely():
 
 
 def test_nees_and_errors_over_bounds_are_those_given():
-    cases = {"A": {"one": summary(6.0), "paper": summary(60.0)}, "B": {"one": summary(7.0)}}
+    cases = {"A": {"sum": summary(6.0), "paper": summary(60.0)}, "B": {"sum": summary(7.0)}}
     left, right, median, _ = draw.nees(cases).axes
     one, two, _ = left.lines
     np.testing.assert_allclose(one.get_data(), [[0.02, 0.04, 0.06], [6, 6, 6]])
@@ -60,3 +63,13 @@ def test_settings_are_drawn_side_by_side():
     left, right = draw.wrong_settings({"right": summary(6.0), "wrong": summary(30.0, 0.04)}).axes
     np.testing.assert_allclose(left.lines[1].get_ydata(), 30)
     np.testing.assert_allclose(right.lines[1].get_ydata(), 0.5)
+
+
+def test_a_tracker_has_one_look_in_both_chapters():
+    labels = {name: tracker.label for name, tracker in TRACKERS.items()}
+    shared = "bank", "paper", "ekf_bayes", "ekf", "ukf", "ring_iekf"
+    here = looks([labels[name] for name in shared], draw.TRACKERS)
+    there = looks([LABELS[name] for name in shared], draw.TRACKERS)
+    assert list(here.values()) == list(there.values())
+    assert len(set(here.values())) == len(shared)
+    assert SENSOR not in {color for color, *_ in draw.TRACKERS.values()}
