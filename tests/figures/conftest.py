@@ -29,7 +29,7 @@ def drawn(request):
     made_up = getattr(request.module, "MADE_UP", set())
     assert through <= made_up
     tests = {name for name in vars(request.module) if name.startswith("test_")}
-    items = (item for item in request.session.items if item.module is request.module)
+    items = (item for item in request.session.items if item.path == request.path)
     if tests <= {item.originalname for item in items}:  # nothing was left out
         assert through == made_up
         functions = drawings(name) if (name := request.path.stem[5:]) in MODULES else {}
