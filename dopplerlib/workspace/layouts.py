@@ -169,7 +169,7 @@ def twins(x: States, array: RadarArray, samples: Count = 100) -> Twins:
     """
     from . import _layout_loop
 
-    x = np.ascontiguousarray(x)
+    x = np.array(x, order="C")  # one that can be written to: for others numba compiles again
     seen, weights = blocks(samples, len(array))
     probability, other = np.empty(len(x)), np.empty((len(x), 6))
     _layout_loop.chances(

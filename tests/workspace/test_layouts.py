@@ -1,12 +1,13 @@
 """Bounds and second valleys of layouts, against other ways to compute them."""
 
+import numba
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
 from scipy.stats import binom
 
 from dopplerlib import doppler_jacobian, doppler_shift
-from dopplerlib.workspace import _layout_search
+from dopplerlib.workspace import _layout_loop, _layout_search
 from dopplerlib.workspace.layouts import layout_quality, named_layouts, twins
 from dopplerlib.workspace.targets import (
     ARRAY,
@@ -39,6 +40,15 @@ def test_the_static_bound_is_that_of_ten_linear_updates(name):
     expected = np.sqrt(np.trace(P[:3, :3]))
     found = layout_quality(TARGETS, ARRAYS[name]).static[0]
     np.testing.assert_allclose(found, expected, rtol=1e-6)  # rounding of ten thousand to one
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_states_that_cannot_be_written_to_are_not_compiled_for():
+    states = TARGETS.copy()
+    twins(states, ARRAY)
+    states.flags.writeable = False
+    twins(states, ARRAY)
+    assert len(_layout_loop.chances.signatures) == 1
 
 
 def test_blocks_of_the_search_lose_two_percent_of_the_bound_at_most():
