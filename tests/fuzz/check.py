@@ -5,7 +5,7 @@ import pytest
 from .run import fuzz
 from .targets import discover
 
-EXAMPLES = 16  # odd calls of each function, the same ones every time; `make fuzz` makes more
+EXAMPLES = 10  # odd calls of each function, the same ones every time; `make fuzz` makes more
 OF_ROOMS = 5  # of the functions of one document, which take longer
 FEW = 4  # of those that take more than 20 ms a call
 SLOW = {
