@@ -4,11 +4,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._hints import Array
-from .style import BOUND, HALO, LABEL, ORANGE, OURS, PINK, TRUTH, drawing, plain_log_ticks
+from .style import BOUND, HALO, LABEL, ORANGE, OURS, PINK, SKY, TRUTH, drawing, plain_log_ticks
 
 _DEPTHS = (OURS, "#74B3D9", "#C5E0F0")  # one, two and three sigma
 _GRAYS = ("#EDEDED", "#D0D0D0", "#A8A8A8")  # the most likely 99, 90 and 50 %
-_LINES = (("#56B4E9", ":"), (ORANGE, "--"), (PINK, "-."), (TRUTH, (0, (1, 1))), (OURS, "-"))
+_LINES = ((SKY, ":"), (ORANGE, "--"), (PINK, "-."), (TRUTH, (0, (1, 1))), (OURS, "-"))
 
 
 @drawing(7, 3.1)

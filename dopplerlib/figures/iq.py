@@ -10,14 +10,14 @@ from .._hints import Array
 from .._typing import ComplexArray
 from ..evaluation.frequency_benchmark import FrequencyBenchmark
 from ..evaluation.intervals import ConfidenceInterval
-from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, TRUTH, drawing
+from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SENSOR, SKY, TRUTH, drawing
 
 _STYLES = (
     (OURS, "-", "o"),
     (ORANGE, "--", "s"),
     (PINK, "-.", "^"),
     (SENSOR, ":", "D"),
-    ("#56B4E9", "-", "v"),
+    (SKY, "-", "v"),
     (TRUTH, "--", "x"),
     ("#8C6D1F", "-.", "+"),
     ("#7A3E9D", ":", "*"),

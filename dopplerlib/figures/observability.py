@@ -10,11 +10,25 @@ from matplotlib.patheffects import withStroke
 
 from .._hints import Array
 from ..model.radar_array import RadarArray
-from .style import BOUND, HALO, LABEL, OURS, PUBLISHED, SENSOR, TRUTH, arrow, drawing, project
+from .style import (
+    BOUND,
+    HALO,
+    LABEL,
+    ORANGE,
+    OURS,
+    PINK,
+    PUBLISHED,
+    SENSOR,
+    SKY,
+    TRUTH,
+    arrow,
+    drawing,
+    project,
+)
 
 _STYLES = ("-", "--", ":", "-.")
 # None of them means published or sensor.
-_COLORS = (OURS, "#CC79A7", "#E69F00", "#56B4E9")
+_COLORS = (OURS, PINK, ORANGE, SKY)
 _DEPTHS = (OURS, "#74B3D9", "#C5E0F0")  # one, two and three sigma
 
 

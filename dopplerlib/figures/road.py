@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 from .._hints import Array
 from ..chain.ridges import Ridge
 from ..signal.spectrogram import Spectrogram
-from .style import BOUND, MEASURED, ORANGE, OURS, PINK, drawing
+from .style import BOUND, MEASURED, ORANGE, OURS, PINK, SKY, drawing
 
 _RANGE = 45.0  # dB
-_COLORS = ORANGE, PINK, OURS, "#F0E442", "#56B4E9"
+_COLORS = ORANGE, PINK, OURS, "#F0E442", SKY
 
 
 @drawing(7, 3.6)

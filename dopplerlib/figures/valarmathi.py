@@ -8,16 +8,16 @@ from matplotlib.figure import Figure
 from .._hints import Array
 from ..evaluation.intervals import ConfidenceInterval, quantile_interval
 from ..systems.valarmathi import ALGORITHMS, AlgorithmRuns, FusionStudy, VelocityPath, WindowTable
-from .style import BOUND, OURS, PUBLISHED, TRUTH, VARIANTS, drawing
+from .style import BOUND, ORANGE, OURS, PINK, PUBLISHED, SENSOR, TRUTH, VARIANTS, drawing
 
 # The color of algorithms 1 to 6, and a line and a mark for print in gray.
 _STYLES = {
-    1: ("#777777", "-", "o"),
-    2: ("#E69F00", "--", "s"),
-    3: ("#222222", ":", "v"),
-    4: ("#CC79A7", "-.", "D"),
-    5: ("#009E73", "--", "^"),
-    6: ("#0072B2", "-", "X"),
+    1: (BOUND, "-", "o"),
+    2: (ORANGE, "--", "s"),
+    3: (TRUTH, ":", "v"),
+    4: (PINK, "-.", "D"),
+    5: (SENSOR, "--", "^"),
+    6: (OURS, "-", "X"),
 }
 # A legend inside of the axes covers the grid behind it.
 _FRAME = dict(frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)

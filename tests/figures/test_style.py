@@ -1,6 +1,7 @@
 """What figures share: a view of space, labels that do not touch, colors of sensors."""
 
 import inspect
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,3 +52,13 @@ def test_a_drawing_gets_a_figure_and_returns_it():
     assert [text.get_text() for text in figure.texts] == ["\N{MINUS SIGN}4 dB, x-1"]
     with pytest.raises(ValueError, match=r"^number must be an array of real numbers, got 'x'"):
         draw("x")
+
+
+def test_a_color_with_a_name_is_called_by_it():
+    named = {c for c in vars(style).values() if isinstance(c, str) and c.startswith("#")}
+    assert style.SKY in named
+    modules = [path for path in Path(style.__file__).parent.glob("*.py") if path.stem != "style"]
+    texts = {path.stem: path.read_text(encoding="utf8").upper() for path in modules}
+    assert [
+        name for name, text in texts.items() if any(f'"{c.upper()}"' in text for c in named)
+    ] == []
